@@ -1,0 +1,70 @@
+"""Constraint: the equations of motion within a tolerance, eqs (26)-(28).
+
+In every coordinate i and at every control point
+
+    -eps_i <= e_i <= eps_i,    e = M q'' + k - q_r - B A f^m - C^T lambda
+
+with eps the moment tolerance [N m] for rotations and the force tolerance [N]
+for translations. On an event only the forces that both neighbouring phases
+can bear enter (see `feet.loaded_rows_at_start`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from drakegait.program.chain import Partials, Pattern, no_dependence
+from drakegait.program.control_points import ControlPoints
+from drakegait.program.formulation import Formulation
+from drakegait.program.local_rows import DenseRows
+from drakegait.program.local_state import LocalState
+from drakegait.walker import feet
+
+
+class EquationsOfMotion(DenseRows):
+    """One row per coordinate, in units of its tolerance."""
+
+    kind = "equations of motion"
+
+    def __init__(self, formulation: Formulation, points: ControlPoints):
+        super().__init__(formulation, points)
+        walker = formulation.walker
+        num = walker.skeleton.num_coordinates
+        self.row_names = walker.coordinate_names
+        self.scale = formulation.row_tolerances
+        self.units = tuple("N m" if turns else "N" for turns in walker.is_rotation)
+        self.lower, self.upper = -np.ones(num), np.ones(num)
+        self.applies = np.ones((points.num, num), dtype=bool)
+        masks = no_dependence(num, points.layout)
+        masks["coordinates"][:] = walker.coupling
+        masks["forces"][:] = walker.muscles.moment_arms.T != 0.0
+        masks["multipliers"][:] = _loads(walker.coordinate_names)
+        masks["time"][:, [0, 2, 3]] = True
+        masks["placement"][:, :2] = True
+        self._declare(Pattern(**masks))
+
+    def values(self, state: LocalState) -> np.ndarray:
+        return state.residual / self.scale
+
+    def partials(self, state: LocalState) -> Partials:
+        dynamics, num = state.dynamics, state.points.num
+        arms = self.formulation.walker.muscles.moment_arms
+        return Partials(
+            q=dynamics.by_q,
+            v=dynamics.by_v,
+            a=dynamics.mass_matrix,
+            f=np.broadcast_to(-arms.T, (num, *arms.T.shape)),
+            multipliers=-np.swapaxes(state.contact_jacobian, 1, 2)
+            * state.points.loaded[:, None, :],
+        )
+
+
+def _loads(names: tuple[str, ...]) -> np.ndarray:
+    """Which contact row loads which coordinate: the trunk's and its own leg's."""
+    mask = np.ones((len(names), feet.NUM_ROWS), dtype=bool)
+    for i, name in enumerate(names):
+        if name.endswith("_r"):
+            mask[i, feet.ROWS_PER_FOOT :] = False
+        if name.endswith("_l"):
+            mask[i, : feet.ROWS_PER_FOOT] = False
+    return mask

@@ -1,0 +1,288 @@
+"""The nonlinear program of walking: variables, rows, costs, names.
+
+`GaitProgram` numbers the rows of all constraints at all control points,
+evaluates them together as arrays (what a solver that takes sparse matrices
+wants), and `mathematical_program` writes the same rows as bindings of a Drake
+`MathematicalProgram`. Both ways run the same local code.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from drakegait.program.control_points import ControlPoints
+from drakegait.program.design import PHASE_DURATIONS, design_vector
+from drakegait.program.equations_of_motion import EquationsOfMotion
+from drakegait.program.excitation import Excitation
+from drakegait.program.foot_contact import Clearance, FootContact
+from drakegait.program.formulation import Formulation
+from drakegait.program.ground_forces import FreeMoment, Friction, NormalForce
+from drakegait.program.joint_limits import JointLimits
+from drakegait.program.local_costs import Deviation, LocalCost, MetabolicCost
+from drakegait.program.local_rows import LocalRows
+from drakegait.program.local_state import LocalState
+from drakegait.program.timing import TimingRows
+from drakegait.transcription.design_vector import Affine, DesignValues
+from drakegait.walker import feet
+
+
+@dataclass(frozen=True)
+class Violation:
+    """One row of the program that does not hold."""
+
+    name: str
+    kind: str
+    amount: float  # in units of the row's scale
+    size: float  # physical
+    unit: str
+
+    def __str__(self) -> str:
+        return f"{self.name}: off by {self.size:.3g} {self.unit}"
+
+
+class GaitProgram:
+    """One walking problem as a nonlinear program in a scaled design vector.
+
+    Attributes:
+        formulation: what is stated.
+        points: the control points.
+        design: the unknowns.
+        constraints, costs: what holds and what is minimised at each control point.
+        timing: the few rows that belong to no control point.
+        smoothing: width of the rounded corners of the energy model, 1 = MODEL 1.6.
+    """
+
+    def __init__(self, formulation: Formulation):
+        self.formulation = formulation
+        self.points = ControlPoints.of(formulation)
+        self.design = design_vector(formulation, self.points)
+        self.smoothing = 1.0
+        kinds: list[type[LocalRows]] = [
+            EquationsOfMotion, FootContact, Clearance, Friction, Excitation,
+        ]  # fmt: skip
+        if not formulation.planar:
+            kinds.append(FreeMoment)
+        if not formulation.lifted:
+            kinds.append(NormalForce)
+        if formulation.limits:
+            kinds.append(JointLimits)
+        self.constraints = [kind(formulation, self.points) for kind in kinds]
+        self.costs: list[LocalCost] = []
+        if formulation.energy_weight > 0.0:
+            self.costs.append(MetabolicCost(formulation, self.points))
+        if formulation.deviation_weight > 0.0:
+            self.costs.append(Deviation(formulation, self.points))
+        self.timing = TimingRows(formulation, self.design, PHASE_DURATIONS)
+        self.selection = self._select()
+        self._number_rows()
+        self._number_entries()
+        self._cached: tuple[bytes, LocalState] | None = None
+
+    # Sizes and names ---------------------------------------------------------------------
+
+    @property
+    def num_variables(self) -> int:
+        """Number of unknowns."""
+        return self.design.num_variables
+
+    @property
+    def num_constraints(self) -> int:
+        """Number of rows."""
+        return len(self.lower)
+
+    @property
+    def num_entries(self) -> int:
+        """Number of entries of the Jacobian that may differ from zero."""
+        return len(self.jacobian_rows)
+
+    def place_name(self, point: int) -> str:
+        """A control point in gait terms: phase and share of it."""
+        phase, share = self.points.phases[point], self.points.shares[point]
+        if share == 0.0:
+            return f"{feet.EVENT_NAMES[phase]}"
+        return f"{feet.PHASE_NAMES[phase]} {share:.2f}"
+
+    @property
+    def row_names(self) -> list[str]:
+        """`"law | phase and share | joint, foot or muscle"` of every row."""
+        names = []
+        for constraint in self.constraints:
+            for point, applies in enumerate(constraint.applies):
+                place = self.place_name(point)
+                names += [
+                    f"{constraint.kind} | {place} | {name}"
+                    for name, holds in zip(constraint.row_names, applies, strict=True)
+                    if holds
+                ]
+        return names + self.timing.names
+
+    # Assembly ----------------------------------------------------------------------------
+
+    def _select(self) -> Affine:
+        """The local variables of all control points from the design vector."""
+        points, num = self.points, self.points.num
+        width, intervals = points.layout.width, self.formulation.splines.num_intervals
+        window = (points.first[:, None] + np.arange(width)) % intervals
+        events = self._local_events()
+        parts = []
+        for name in ("coordinates", "forces", "timing", "placement", "multipliers"):
+            full = self.design.selection(name)
+            if name in ("coordinates", "forces"):
+                take = lambda a: a[:, window].transpose(1, 0, 2).reshape(num, -1)  # noqa: E731
+                parts.append(Affine(take(full.index), take(full.factor), take(full.constant)))
+            elif name == "timing":
+                which, shift = events
+                constant = full.constant[which] + shift
+                parts.append(Affine(full.index[which], full.factor[which], constant))
+            elif name == "placement":
+                parts.append(Affine(*(np.tile(a, (num, 1)) for a in
+                                      (full.index, full.factor, full.constant))))  # fmt: skip
+            else:
+                parts.append(full)
+        return Affine(
+            *(np.concatenate([getattr(part, field) for part in parts], axis=1)
+              for field in ("index", "factor", "constant"))
+        )  # fmt: skip
+
+    def _local_events(self) -> tuple[np.ndarray, np.ndarray]:
+        """Positions in the timing block of T and the local events, and their shifts."""
+        phases, num = self.points.phases, self.formulation.schedule.num_phases
+        end = num / feet.NUM_PHASES
+        before = np.where(phases == 0, num, phases)  # theta of the previous phase's start
+        which = np.stack([0 * phases, before, phases + 1, phases + 2], axis=1)
+        shift = np.zeros(which.shape)
+        shift[phases == 0, 1] = -end
+        return which, shift
+
+    def _number_rows(self) -> None:
+        self._row_numbers, lower, upper, scale, units = [], [], [], [], []
+        total = 0
+        for constraint in self.constraints:
+            numbers = np.full(constraint.applies.shape, -1)
+            count = int(constraint.applies.sum())
+            numbers[constraint.applies] = total + np.arange(count)
+            self._row_numbers.append(numbers)
+            columns = np.nonzero(constraint.applies)[1]
+            lower.append(constraint.lower[columns])
+            upper.append(constraint.upper[columns])
+            scale.append(constraint.scale[columns])
+            units += [constraint.units[column] for column in columns]
+            total += count
+        lower.append(self.timing.lower)
+        upper.append(self.timing.upper)
+        scale.append(self.timing.scale)
+        self.first_timing_row = total
+        self.lower, self.upper = np.concatenate(lower), np.concatenate(upper)
+        self.row_scale, self.row_units = np.concatenate(scale), units + self.timing.units
+
+    def _number_entries(self) -> None:
+        """Positions of the Jacobian's entries, and where each local derivative goes."""
+        rows, columns, self._kept, factors = [], [], [], []
+        for constraint, numbers in zip(self.constraints, self._row_numbers, strict=True):
+            row = numbers[:, constraint.rows]
+            column = self.selection.index[:, constraint.columns]
+            kept = (row >= 0) & (column >= 0)
+            rows.append(row[kept])
+            columns.append(column[kept])
+            factors.append(self.selection.factor[:, constraint.columns][kept])
+            self._kept.append(np.flatnonzero(kept))
+        rows.append(self.first_timing_row + self.timing.rows)
+        columns.append(self.timing.columns)
+        factors.append(np.ones(len(self.timing.rows)))
+        self._factors = np.concatenate(factors)
+        keys = np.concatenate(rows) * self.num_variables + np.concatenate(columns)
+        unique, self._entry = np.unique(keys, return_inverse=True)
+        self._distinct = len(unique) == len(keys)
+        if self._distinct:
+            # Entries need not be sorted; keeping them as computed saves a pass.
+            self.jacobian_rows, self.jacobian_columns = np.concatenate(rows), np.concatenate(columns)
+        else:
+            self.jacobian_rows = unique // self.num_variables
+            self.jacobian_columns = unique % self.num_variables
+
+    # Evaluation --------------------------------------------------------------------------
+
+    def state(self, x: np.ndarray) -> LocalState:
+        """The physics at all control points for the design vector `x` (kept for one x)."""
+        key = x.tobytes() + np.float64(self.smoothing).tobytes()
+        if self._cached is None or self._cached[0] != key:
+            z = self.selection.values(x)
+            self._cached = key, LocalState(self.formulation, self.points, z, self.smoothing)
+        return self._cached[1]
+
+    def cost(self, x: np.ndarray) -> float:
+        """f of eq. (13)."""
+        return float(sum(self.cost_parts(x).values()))
+
+    def cost_parts(self, x: np.ndarray) -> dict[str, float]:
+        """Weighted parts of f by kind."""
+        state = self.state(x)
+        return {cost.kind: float(cost.values(state).sum()) for cost in self.costs}
+
+    def gradient(self, x: np.ndarray) -> np.ndarray:
+        """df/dx (num_variables,)."""
+        state, total = self.state(x), np.zeros(self.num_variables + 1)
+        for cost in self.costs:
+            local = cost.gradient(state) * self.selection.factor[:, cost.columns]
+            index = self.selection.index[:, cost.columns]
+            total += np.bincount(
+                np.where(index >= 0, index, self.num_variables).ravel(),
+                local.ravel(),
+                self.num_variables + 1,
+            )
+        return total[:-1]
+
+    def rows(self, x: np.ndarray) -> np.ndarray:
+        """Scaled values of all rows (num_constraints,)."""
+        state = self.state(x)
+        parts = [
+            constraint.values(state)[constraint.applies] for constraint in self.constraints
+        ]
+        return np.concatenate([*parts, self.timing.values(x)])
+
+    def jacobian(self, x: np.ndarray) -> np.ndarray:
+        """Entries of the Jacobian at `jacobian_rows`, `jacobian_columns`."""
+        state = self.state(x)
+        parts = [
+            constraint.jacobian(state).ravel()[kept]
+            for constraint, kept in zip(self.constraints, self._kept, strict=True)
+        ]
+        values = np.concatenate([*parts, self.timing.jacobian(x)]) * self._factors
+        if self._distinct:
+            return values
+        return np.bincount(self._entry, values, self.num_entries)
+
+    # Reading -----------------------------------------------------------------------------
+
+    def values(self, x: np.ndarray) -> DesignValues:
+        """The unknowns in full and in physical units; multipliers also if projected."""
+        values = self.design.unpack(x)
+        if self.formulation.lifted:
+            return values
+        from dataclasses import replace
+
+        return replace(values, multipliers=self.state(x).multipliers)
+
+    def violations(self, x: np.ndarray) -> np.ndarray:
+        """How far each row is outside its bounds, in units of its scale (num_constraints,)."""
+        rows = self.rows(x)
+        return np.maximum(np.maximum(self.lower - rows, rows - self.upper), 0.0)
+
+    def worst(self, x: np.ndarray, count: int = 3) -> list[Violation]:
+        """The `count` rows that are violated most, in gait terms."""
+        amounts = np.nan_to_num(self.violations(x), nan=np.inf)
+        order = np.argsort(-amounts)[:count]
+        names = self.row_names
+        return [
+            Violation(
+                names[i],
+                names[i].split(" | ")[0],
+                float(amounts[i]),
+                float(amounts[i] * self.row_scale[i]),
+                self.row_units[i],
+            )
+            for i in order
+            if amounts[i] > 0.0
+        ]

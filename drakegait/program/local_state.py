@@ -1,0 +1,282 @@
+"""The physics at control points, each part computed once and only when asked for.
+
+From the local variables of `ControlPoints` follow the motion and the muscle
+forces with their time derivatives, and from those the equations of motion
+(15), the contact kinematics and the muscles' activations and energy, all with
+first derivatives by physical quantities. Constraints and costs read what they
+need; `chain` turns their partial derivatives into derivatives by local
+variables.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from drakegait.program.control_points import ControlPoints
+from drakegait.program.formulation import Formulation
+from drakegait.walker import feet
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Functions of time at the control points, (num, num_functions) each.
+
+    Attributes:
+        value, rate, acceleration: x, x', x'' [per s, per s^2].
+        by_tau: derivatives of those three by tau, stacked (3, num, num_functions).
+    """
+
+    value: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray
+    by_tau: np.ndarray
+
+
+@dataclass(frozen=True)
+class Dynamics:
+    """Residual r of the skeleton under its contact forces, before muscles.
+
+    r = M q'' + k - q_r - C^T lambda, eq. (15), with its partial derivatives; the
+    derivative by the accelerations is the mass matrix.
+    """
+
+    residual: np.ndarray
+    by_q: np.ndarray
+    by_v: np.ndarray
+    mass_matrix: np.ndarray
+
+
+@dataclass(frozen=True)
+class MultiplierDerivatives:
+    """d lambda* of eq. (17) by the motion and the muscle forces, (num, 14, ...)."""
+
+    by_q: np.ndarray
+    by_v: np.ndarray
+    by_a: np.ndarray
+    by_f: np.ndarray
+
+
+class LocalState:
+    """Lazy evaluation of the physics at `points` for the local variables `z` (num, size)."""
+
+    def __init__(
+        self, formulation: Formulation, points: ControlPoints, z: np.ndarray, smoothing: float = 1.0
+    ):
+        self.formulation = formulation
+        self.points = points
+        self.smoothing = smoothing
+        split = points.layout.split(z)
+        self._coordinates, self._forces, self.time, self.placement, self._multipliers = split
+        self.stride_time = self.time[:, :1]
+        self.stride_length = self.placement[:, 0] + self.placement[:, 1]
+        start, end = self.time[:, 2], self.time[:, 3]
+        self.tau = (1.0 - points.shares) * start + points.shares * end
+
+    # Motion and muscle forces ------------------------------------------------------------
+
+    @cached_property
+    def basis(self) -> np.ndarray:
+        """Weights of the window's coefficients for derivatives 0..3 by tau, (4, num, width)."""
+        splines, points = self.formulation.splines, self.points
+        width = points.layout.width
+        return np.stack(
+            [splines.windowed_basis(self.tau, points.first, width, order) for order in range(4)]
+        )
+
+    def _curve(self, coefficients: np.ndarray) -> Curve:
+        orders = np.einsum("pcw,opw->opc", coefficients, self.basis)
+        period = self.stride_time
+        return Curve(
+            value=orders[0],
+            rate=orders[1] / period,
+            acceleration=orders[2] / period**2,
+            by_tau=np.stack([orders[1], orders[2] / period, orders[3] / period**2]),
+        )
+
+    @cached_property
+    def motion(self) -> Curve:
+        """Coordinates, velocities, accelerations; hat_x without its steady advance."""
+        return self._curve(self._coordinates)
+
+    @cached_property
+    def forces(self) -> Curve:
+        """Muscle (tendon) forces and their rates."""
+        return self._curve(self._forces)
+
+    @cached_property
+    def q(self) -> np.ndarray:
+        """Coordinates with the steady advance of hat_x, (num, num_coordinates)."""
+        q = self.motion.value.copy()
+        q[:, 0] += self.stride_length * self.tau
+        return q
+
+    @cached_property
+    def v(self) -> np.ndarray:
+        """Velocities with the steady advance."""
+        v = self.motion.rate.copy()
+        v[:, 0] += self.stride_length / self.stride_time[:, 0]
+        return v
+
+    # Contact -----------------------------------------------------------------------------
+
+    @cached_property
+    def contact_jacobian(self) -> np.ndarray:
+        """C of all contact rows (num, 14, num_coordinates), the force side (MODEL 6.6)."""
+        return self.formulation.walker.skeleton.contact_jacobian(self.q)
+
+    @cached_property
+    def contact_positions(self) -> tuple[np.ndarray, np.ndarray]:
+        """Values of the contact rows (num, 14) and their gradients (num, 14, num_coordinates)."""
+        skeleton = self.formulation.walker.skeleton
+        values = np.zeros((self.points.num, feet.NUM_ROWS))
+        gradients = self.contact_jacobian.copy()
+        columns = [row for row in range(feet.NUM_ROWS) if row not in feet.YAW_ROWS]
+        values[:, columns] = skeleton.contact_points(self.q).reshape(self.points.num, -1)
+        if not self.formulation.planar:
+            yaw = list(feet.YAW_ROWS)
+            values[:, yaw] = skeleton.foot_yaw(self.q)
+            gradients[:, yaw] = skeleton.foot_yaw_gradient(self.q)
+        return values, gradients
+
+    @cached_property
+    def footprints(self) -> tuple[np.ndarray, np.ndarray]:
+        """Prescribed contact rows (num, 14) and derivatives by the placement (num, 14, 5)."""
+        return feet.footprints(
+            self.placement, self.points.left_prints, self.formulation.walker.foot
+        )
+
+    # Dynamics ----------------------------------------------------------------------------
+
+    @cached_property
+    def multipliers(self) -> np.ndarray:
+        """Contact forces and moments (num, 14): variables, or lambda* of eq. (17)."""
+        if self.formulation.lifted:
+            return np.where(self.points.loaded, self._multipliers, 0.0)
+        multipliers = np.zeros((self.points.num, feet.NUM_ROWS))
+        for k, needed in enumerate(self.unloaded - self.muscle_torques):
+            rows = self.points.loaded[k]
+            jacobian = self.contact_jacobian[k, rows]
+            multipliers[k, rows] = np.linalg.solve(jacobian @ jacobian.T, jacobian @ needed)
+        return multipliers
+
+    @cached_property
+    def muscle_torques(self) -> np.ndarray:
+        """B A f of eq. (24), (num, num_coordinates)."""
+        return self.forces.value @ self.formulation.walker.muscles.moment_arms
+
+    @cached_property
+    def dynamics(self) -> Dynamics:
+        """The skeleton's residual and derivatives, contact forces held constant."""
+        walker = self.formulation.walker
+        residual, by_q, by_v, mass = walker.skeleton.residual_derivatives(
+            self.q, self.v, self.motion.acceleration, self.multipliers
+        )
+        passive_by_q, passive_by_v = walker.passive.derivatives(self.q, self.v)
+        return Dynamics(
+            residual - walker.passive.forces(self.q, self.v),
+            by_q - passive_by_q,
+            by_v - passive_by_v,
+            mass,
+        )
+
+    @cached_property
+    def residual(self) -> np.ndarray:
+        """e of eq. (18) in every coordinate, without derivatives (num, num_coordinates)."""
+        if "dynamics" in self.__dict__:
+            return self.dynamics.residual - self.muscle_torques
+        contact = np.einsum("pri,pr->pi", self.contact_jacobian, self.multipliers)
+        return self.unloaded - contact - self.muscle_torques
+
+    @cached_property
+    def unloaded(self) -> np.ndarray:
+        """M q'' + k - q_r: generalised forces that muscles and ground must supply."""
+        walker = self.formulation.walker
+        needed = walker.skeleton.inverse_dynamics(self.q, self.v, self.motion.acceleration)
+        return needed - walker.passive.forces(self.q, self.v)
+
+    @cached_property
+    def multiplier_derivatives(self) -> MultiplierDerivatives:
+        """Derivatives of lambda* (projected multipliers only).
+
+        With G = C C^T and dr' taken at constant lambda*: d lambda* = G^-1 (C dr' + dC e),
+        because C e = 0 at lambda*; dC e is the change of the contact velocities at the joint
+        velocity e.
+        """
+        num, size = self.points.num, self.q.shape[1]
+        arms = self.formulation.walker.muscles.moment_arms
+        out = MultiplierDerivatives(
+            *(np.zeros((num, feet.NUM_ROWS, size)) for _ in range(3)),
+            np.zeros((num, feet.NUM_ROWS, len(arms))),
+        )
+        skeleton, dynamics = self.formulation.walker.skeleton, self.dynamics
+        for k in range(num):
+            rows = self.points.loaded[k]
+            jacobian = self.contact_jacobian[k, rows]
+            inverse = np.linalg.inv(jacobian @ jacobian.T)
+            turning = skeleton.contact_velocity_derivative(self.q[k], self.residual[k])[rows]
+            out.by_q[k, rows] = inverse @ (jacobian @ dynamics.by_q[k] + turning)
+            out.by_v[k, rows] = inverse @ jacobian @ dynamics.by_v[k]
+            out.by_a[k, rows] = inverse @ jacobian @ dynamics.mass_matrix[k]
+            out.by_f[k, rows] = -inverse @ jacobian @ arms.T
+        return out
+
+    # Muscles -----------------------------------------------------------------------------
+
+    @cached_property
+    def muscle_inputs(self) -> np.ndarray:
+        """f, f', f'', l, l', l'' of every muscle (num, num_muscles, 6)."""
+        muscles = self.formulation.walker.muscles
+        arms = muscles.moment_arms
+        return np.stack(
+            [
+                self.forces.value,
+                self.forces.rate,
+                self.forces.acceleration,
+                muscles.l0 - self.q @ arms.T,
+                -self.v @ arms.T,
+                -self.motion.acceleration @ arms.T,
+            ],
+            axis=-1,
+        )
+
+    @cached_property
+    def muscles(self) -> tuple[np.ndarray, np.ndarray]:
+        """Excitation rows and power (num, num_muscles, 3) and their Jacobian (..., 3, 6)."""
+        functions = self.formulation.walker.muscle_functions
+        return functions.evaluate_with_jacobian(self.muscle_inputs, self.smoothing)
+
+    @cached_property
+    def muscle_values(self) -> np.ndarray:
+        """Excitation rows [1/s] and power [W] without derivatives (num, num_muscles, 3)."""
+        if "muscles" in self.__dict__:
+            return self.muscles[0]
+        return self.formulation.walker.muscle_functions.evaluate(
+            self.muscle_inputs, self.smoothing
+        )
+
+    @cached_property
+    def muscle_inputs_by_tau(self) -> np.ndarray:
+        """Change of `muscle_inputs` with tau at fixed coefficients (num, num_muscles, 6)."""
+        arms = self.formulation.walker.muscles.moment_arms
+        by_tau = self.motion.by_tau
+        force = np.moveaxis(self.forces.by_tau, 0, -1)
+        # hat_x, which advances steadily, spans no muscle.
+        length = np.moveaxis(-by_tau @ arms.T, 0, -1)
+        return np.concatenate([force, length], axis=-1)
+
+    # Ground reactions --------------------------------------------------------------------
+
+    @cached_property
+    def ground_reactions(self) -> np.ndarray:
+        """Force on each foot (num, 2, 3) [N]: sum of heel and toe."""
+        by_foot = self.multipliers.reshape(-1, 2, feet.ROWS_PER_FOOT)
+        return by_foot[:, :, 0:3] + by_foot[:, :, 3:6]
+
+    @cached_property
+    def share_of_cycle(self) -> np.ndarray:
+        """Integration weight of each control point as part of the stride (num,)."""
+        share = np.einsum("pe,pe->p", self.points.weights, self.time[:, 1:4])
+        return self.formulation.repeats * share

@@ -1,0 +1,316 @@
+"""One experiment: who walks how, as frozen and validated data.
+
+A `GaitStudy` is a list of physical statements; `with_...` methods return a
+changed copy. `solve` turns it into a `Gait`.
+
+    study = GaitStudy.spatial(nodes=18)
+    heavy = study.with_added_mass("foot_r", 2.0)  # [kg]
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from drakegait.errors import InvalidInput, UnknownName
+from drakegait.program.formulation import Formulation, JointLimit, Tolerances
+from drakegait.reference.deviation import DeviationSettings
+from drakegait.reference.reference import Reference
+from drakegait.settings import Settings, parse
+from drakegait.transcription.schedule import Schedule
+from drakegait.transcription.splines import PeriodicQuintic
+from drakegait.walker import coordinates
+from drakegait.walker.feet import ContactSettings
+from drakegait.walker.metabolics import EnergySettings
+from drakegait.walker.muscle_dynamics import MuscleSettings
+from drakegait.walker.passive_joints import PassiveSettings
+from drakegait.walker.subject import AddedMass, Subject
+from drakegait.walker.walker import Walker
+
+MODELS = ("spatial", "planar", "spatial-symmetric", "planar-symmetric")
+SETTINGS_GROUPS = {
+    "tolerances": Tolerances,
+    "contact": ContactSettings,
+    "muscles": MuscleSettings,
+    "energy": EnergySettings,
+    "passive": PassiveSettings,
+    "deviation": DeviationSettings,
+}
+FEWEST_NODES, MOST_NODES = 10, 141
+SPEEDS = (0.3, 2.5)  # [m/s]
+# Control points inside phases 1-4 that keep 18 nodes honest between the points (measured: the
+# densest instants then stay within twice the tolerance); in proportion for more nodes.
+_POINTS, _POINTS_NODES = (5, 4, 14, 11), 18
+
+
+@dataclass(frozen=True, kw_only=True)
+class GaitStudy:
+    """A walking experiment.
+
+    Args:
+        model: `"spatial"`, `"planar"`, `"spatial-symmetric"` or `"planar-symmetric"`.
+        nodes: spline nodes per stride, both ends counted; odd for symmetric models.
+        speed: average forward velocity [m/s].
+        subject: height and mass.
+        added_masses: weights worn on segments.
+        energy_weight, deviation_weight: w_E and w_J of eq. (13).
+        strength: factor on the largest force of muscles, by name (`"soleus_l"`) or group.
+        planar_muscles: muscle set of the planar models, `"table3"` or `"gait2d"`.
+        reference: the walk to stay close to; default the embedded stride of the model.
+        multipliers: `"lifted"` (contact forces as variables) or `"projected"` (eq. 17).
+        interior_points: control points inside each of the 8 (symmetric: 4) phases; default
+            by the number of nodes.
+        limits: optional joint limits.
+        tolerances, contact, muscles, energy, passive, deviation: constants.
+
+    Raises:
+        InvalidInput, UnknownName: naming the value and what is allowed.
+    """
+
+    model: str = "spatial"
+    nodes: int = 18
+    speed: float = 1.2
+    subject: Subject = field(default_factory=Subject)
+    added_masses: tuple[AddedMass, ...] = ()
+    energy_weight: float = 1.0
+    deviation_weight: float = 1.0
+    strength: Mapping[str, float] = field(default_factory=dict)
+    planar_muscles: str = "table3"
+    reference: Reference | None = field(default=None, compare=False)
+    multipliers: str = "lifted"
+    interior_points: tuple[int, ...] | None = None
+    limits: tuple[JointLimit, ...] = ()
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    contact: ContactSettings = field(default_factory=ContactSettings)
+    muscles: MuscleSettings = field(default_factory=MuscleSettings)
+    energy: EnergySettings = field(default_factory=EnergySettings)
+    passive: PassiveSettings = field(default_factory=PassiveSettings)
+    deviation: DeviationSettings = field(default_factory=DeviationSettings)
+
+    def __post_init__(self) -> None:
+        if self.model not in MODELS:
+            raise UnknownName("model", self.model, MODELS)
+        if self.multipliers not in ("lifted", "projected"):
+            raise UnknownName("multipliers", self.multipliers, ("lifted", "projected"))
+        self._check_nodes()
+        _check_number("speed", self.speed, *SPEEDS, "m/s")
+        _check_number("energy weight", self.energy_weight, 0.0, 1e3, "-")
+        _check_number("deviation weight", self.deviation_weight, 0.0, 1e3, "-")
+        if self.energy_weight == 0.0 and self.deviation_weight == 0.0:
+            raise InvalidInput("weights", (0.0, 0.0), "positive in at least one place")
+        if self.reference is not None and self.reference.kind != self.skeleton_kind:
+            raise InvalidInput("kind of the reference", self.reference.kind, self.skeleton_kind)
+        phases = 4 if self.symmetric else 8
+        if self.interior_points is not None and len(self.interior_points) != phases:
+            raise InvalidInput("interior_points", self.interior_points, f"{phases} counts")
+        names = [name for name in coordinates.names(self.skeleton_kind) if name != "hat_x"]
+        for limit in self.limits:
+            if limit.coordinate not in names:
+                raise UnknownName("coordinate of a limit", limit.coordinate, names)
+
+    def _check_nodes(self) -> None:
+        whole = isinstance(self.nodes, (int, np.integer)) and not isinstance(self.nodes, bool)
+        if not whole or not FEWEST_NODES <= self.nodes <= MOST_NODES:
+            allowed = f"a whole number from {FEWEST_NODES} to {MOST_NODES}"
+            raise InvalidInput("nodes", self.nodes, allowed)
+        if self.symmetric and self.nodes % 2 == 0:
+            allowed = "odd for a symmetric model (a node must lie at half the cycle)"
+            raise InvalidInput("nodes", self.nodes, allowed)
+
+    # Making ------------------------------------------------------------------------------
+
+    @classmethod
+    def spatial(cls, nodes: int = 18, **statements: Any) -> GaitStudy:
+        """A three-dimensional walker whose legs move independently (3DNS)."""
+        return cls(model="spatial", nodes=nodes, **statements)
+
+    @classmethod
+    def planar(cls, nodes: int = 18, **statements: Any) -> GaitStudy:
+        """A walker in the sagittal plane whose legs move independently (2DNS)."""
+        return cls(model="planar", nodes=nodes, **statements)
+
+    @classmethod
+    def spatial_symmetric(cls, nodes: int = 19, **statements: Any) -> GaitStudy:
+        """A three-dimensional walker with mirrored legs."""
+        return cls(model="spatial-symmetric", nodes=nodes, **statements)
+
+    @classmethod
+    def planar_symmetric(cls, nodes: int = 35, **statements: Any) -> GaitStudy:
+        """A walker in the sagittal plane with mirrored legs (2DS)."""
+        return cls(model="planar-symmetric", nodes=nodes, **statements)
+
+    def replace(self, **statements: Any) -> GaitStudy:
+        """A copy with other statements."""
+        return dataclasses.replace(self, **statements)
+
+    def with_added_mass(
+        self, segment: str, mass: float, point: tuple[float, float, float] | None = None
+    ) -> GaitStudy:
+        """A copy that wears `mass` [kg] on `segment`, at `point` of its frame [m]."""
+        return self.replace(added_masses=(*self.added_masses, AddedMass(segment, mass, point)))
+
+    def with_limit(
+        self, coordinate: str, low: float = -math.inf, high: float = math.inf
+    ) -> GaitStudy:
+        """A copy where `coordinate` stays within [low, high] (anatomical) [rad] or [m]."""
+        return self.replace(limits=(*self.limits, JointLimit(coordinate, low, high)))
+
+    def with_settings(self, **values: Any) -> GaitStudy:
+        """A copy with some constants changed, by their names (`"group.name"` if ambiguous).
+
+        Text is read as the constant's type.
+        """
+        changes: dict[str, Any] = {}
+        for name, value in values.items():
+            group, item = find_setting(name)
+            if isinstance(value, str):
+                value = parse(item, value)
+            changes.setdefault(group, {})[item.name] = value
+        return self.replace(
+            **{group: getattr(self, group).replace(**new) for group, new in changes.items()}
+        )
+
+    # Reading -----------------------------------------------------------------------------
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the left half of the walk mirrors the right half."""
+        return self.model.endswith("-symmetric")
+
+    @property
+    def skeleton_kind(self) -> str:
+        """`"spatial"` or `"planar"`."""
+        return self.model.removesuffix("-symmetric")
+
+    @cached_property
+    def walker(self) -> Walker:
+        """The person of this study."""
+        return Walker.build(
+            self.skeleton_kind,
+            self.subject,
+            self.added_masses,
+            self.muscles,
+            self.energy,
+            self.passive,
+            self.strength,
+            self.planar_muscles,
+        )
+
+    @cached_property
+    def reference_walk(self) -> Reference:
+        """The walk that this one is compared with."""
+        if self.reference is not None:
+            return self.reference
+        return Reference.embedded(self.skeleton_kind, self.subject, deviation=self.deviation)
+
+    @property
+    def schedule(self) -> Schedule:
+        """Control points."""
+        points = self.interior_points
+        if points is None:
+            factor = max(1.0, (self.nodes - 1) / (_POINTS_NODES - 1))
+            points = tuple(round(factor * (n + 1)) - 1 for n in _POINTS)
+            points = points if self.symmetric else 2 * points
+        return Schedule(tuple(points))
+
+    def formulation(self, event_centres: np.ndarray | None = None) -> Formulation:
+        """The statements as the program takes them.
+
+        Args:
+            event_centres: fractions of the cycle (8,) around which the events may move;
+                default those of the reference.
+        """
+        if event_centres is None:
+            fractions = np.asarray(self.reference_walk.phase_fractions)
+            event_centres = np.concatenate([[0.0], np.cumsum(fractions)[:-1]])
+        return Formulation(
+            walker=self.walker,
+            reference=self.reference_walk,
+            speed=float(self.speed),
+            symmetric=self.symmetric,
+            energy_weight=float(self.energy_weight),
+            deviation_weight=float(self.deviation_weight),
+            splines=PeriodicQuintic(self.nodes),
+            schedule=self.schedule,
+            tolerances=self.tolerances,
+            contact=self.contact,
+            limits=self.limits,
+            lifted=self.multipliers == "lifted",
+            event_centres=tuple(float(centre) for centre in event_centres),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything but the reference, as plain types that JSON can hold."""
+        plain = {
+            item.name: getattr(self, item.name)
+            for item in dataclasses.fields(self)
+            if item.name != "reference"
+        }
+        for name, value in plain.items():
+            if isinstance(value, Settings):
+                plain[name] = value.to_dict()
+        plain["strength"] = dict(self.strength)
+        plain["added_masses"] = [dataclasses.asdict(item) for item in self.added_masses]
+        plain["limits"] = [dataclasses.asdict(item) for item in self.limits]
+        points = self.interior_points
+        plain["interior_points"] = None if points is None else list(points)
+        return plain
+
+    @classmethod
+    def from_dict(cls, plain: Mapping[str, Any], reference: Reference | None = None) -> GaitStudy:
+        """Inverse of `to_dict`; raises UnknownName for a key that no study has."""
+        values = dict(plain)
+        known = {item.name for item in dataclasses.fields(cls)}
+        for name in values:
+            if name not in known:
+                raise UnknownName("study key", name, sorted(known))
+        groups = {"subject": Subject, **SETTINGS_GROUPS}
+        for name, group in groups.items():
+            if name in values:
+                values[name] = group(**values[name])
+        values["added_masses"] = tuple(
+            AddedMass(item["segment"], item["mass"], item.get("point"))
+            for item in values.get("added_masses", ())
+        )
+        values["limits"] = tuple(JointLimit(**item) for item in values.get("limits", ()))
+        points = values.get("interior_points")
+        values["interior_points"] = None if points is None else tuple(points)
+        return cls(**values, reference=reference)
+
+
+def settings_by_name() -> dict[str, tuple[str, dataclasses.Field]]:
+    """All constants of a study: name (`"group.name"` where two share one) -> group, field."""
+    owners: dict[str, list[tuple[str, dataclasses.Field]]] = {}
+    for group, settings in SETTINGS_GROUPS.items():
+        for item in dataclasses.fields(settings):
+            owners.setdefault(item.name, []).append((group, item))
+    found = {}
+    for name, places in owners.items():
+        for group, item in places:
+            found[name if len(places) == 1 else f"{group}.{name}"] = (group, item)
+    return found
+
+
+def find_setting(name: str) -> tuple[str, dataclasses.Field]:
+    """Group and field of a constant; `"group.name"` always works."""
+    known = settings_by_name()
+    if name in known:
+        return known[name]
+    group, _, rest = name.partition(".")
+    if group in SETTINGS_GROUPS:
+        for item in dataclasses.fields(SETTINGS_GROUPS[group]):
+            if item.name == rest:
+                return group, item
+    raise UnknownName("setting", name, sorted(known))
+
+
+def _check_number(name: str, value: Any, low: float, high: float, unit: str) -> None:
+    number = isinstance(value, (int, float, np.integer, np.floating))
+    if not number or isinstance(value, bool) or not math.isfinite(value) or not low <= value <= high:
+        raise InvalidInput(name, value, f"a number from {low:g} to {high:g} [{unit}]")

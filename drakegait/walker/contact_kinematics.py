@@ -1,0 +1,108 @@
+"""Contact rows of both feet, their Jacobian and its derivatives, in closed form.
+
+Rows of a foot: heel x, y, z, toe x, y, z in world axes [m], and the rotation about the vertical
+[rad]. The yaw row is e_z . angular velocity of the foot, so that its multiplier is a pure
+vertical moment; it is not the derivative of the heading angle where the foot rolls and pitches.
+
+With w_i the axis of coordinate i (0 if it is a translation) and J_i the velocity of a point per
+unit speed of i, the second derivative of a point that both i and j move is
+
+    d2 p / dq_i dq_j = w_i x J_j      for i on the way from the ground to j (or i = j),
+
+and d w_j / dq_i = w_i x w_j for i strictly inside of j, else 0.
+All functions are vectorised over leading axes (...).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from drakegait.walker.dynamics_derivatives import Motion, cross, skew
+
+
+@dataclass(frozen=True, eq=False)
+class FeetGeometry:
+    """Contact points and the coordinates that move them.
+
+    Attributes:
+        inner: (n, n) as in `Tree`.
+        moves: (2, n) 1 where the coordinate moves the right, the left foot.
+        feet: (2,) position of the feet in the bodies of a `Motion`.
+        points: (2, 2, 3) heel and toe in the axes of their foot [m].
+    """
+
+    inner: np.ndarray
+    moves: np.ndarray
+    feet: np.ndarray
+    points: np.ndarray
+
+    def contact_points(self, motion: Motion) -> np.ndarray:
+        """World positions (..., 2, 2, 3) of heel and toe of both feet [m]."""
+        turned = self.points @ np.swapaxes(motion.rotations[..., self.feet, :, :], -1, -2)
+        return turned + motion.origins[..., self.feet, None, :]
+
+    def jacobian(self, motion: Motion) -> np.ndarray:
+        """Contact Jacobian (..., 14, n)."""
+        axes, columns = self._axes_and_columns(motion)
+        return _rows(np.swapaxes(columns, -1, -2), self.moves * axes[..., None, :, 2])
+
+    def force_derivative(self, motion: Motion, multipliers: np.ndarray) -> np.ndarray:
+        """Derivative (..., n, n) with respect to q of C(q)^T multipliers, these held constant.
+
+        Args:
+            multipliers: (..., 14) forces [N] and yaw moments [N m] on the feet.
+        """
+        axes, columns = self._axes_and_columns(motion)
+        by_foot = multipliers.reshape(*multipliers.shape[:-1], 2, 7)
+        forces = by_foot[..., :6].reshape(*by_foot.shape[:-1], 2, 3)
+        # lambda . (w_i x J_j) = (lambda x w_i) . J_j, summed over the four points
+        arms = axes[..., None, None, :, :] @ np.swapaxes(skew(forces), -1, -2)
+        pairs = np.sum(arms @ np.swapaxes(columns, -1, -2), axis=(-3, -4))
+        outer = self.inner * pairs
+        strict = self.inner - np.eye(len(self.inner))
+        result = outer + np.swapaxes(strict * pairs, -1, -2)
+        # row i, column j: m e_z . (w_j x w_i), j strictly inside of i
+        moments = by_foot[..., 6] @ self.moves
+        vertical = _vertical_ofcross(axes)
+        return result + moments[..., :, None] * np.swapaxes(strict * vertical, -1, -2)
+
+    def velocity_derivative(self, motion: Motion, speeds: np.ndarray) -> np.ndarray:
+        """Derivative (..., 14, n) with respect to q of C(q) speeds, these held constant.
+
+        Args:
+            speeds: (..., n).
+        """
+        axes, columns = self._axes_and_columns(motion)
+        strict = self.inner - np.eye(len(self.inner))
+        spin = axes * speeds[..., None]
+        carried = self.inner @ (columns * speeds[..., None, None, :, None])
+        inward = strict.T @ spin
+        rate = cross(axes[..., None, None, :, :], carried)
+        rate = self.moves[:, None, :, None] * rate
+        rate = rate + cross(inward[..., None, None, :, :], columns)
+        spin_beyond = strict @ (spin[..., None, :, :] * self.moves[..., None])
+        lifted = cross(axes[..., None, :, :], spin_beyond)[..., 2] * self.moves
+        return _rows(np.swapaxes(rate, -1, -2), lifted)
+
+    def _axes_and_columns(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+        """Axes (..., n, 3) and velocities (..., 2, 2, n, 3) of the points per unit speed."""
+        axes, at_origin = motion.twists[..., :3], motion.twists[..., 3:]
+        points = self.contact_points(motion)
+        # v + w x p = v + w @ [p x]: row vector times the matrix of p
+        columns = axes[..., None, None, :, :] @ skew(points) + at_origin[..., None, None, :, :]
+        return axes, columns * self.moves[:, None, :, None]
+
+
+def _rows(point_rows: np.ndarray, yaw_rows: np.ndarray) -> np.ndarray:
+    """(..., 2, 2, 3, n) and (..., 2, n) -> (..., 14, n)."""
+    lead, n = yaw_rows.shape[:-2], yaw_rows.shape[-1]
+    points = point_rows.reshape(*lead, 2, 6, n)
+    return np.concatenate([points, yaw_rows[..., None, :]], axis=-2).reshape(*lead, 14, n)
+
+
+def _vertical_ofcross(axes: np.ndarray) -> np.ndarray:
+    """e_z . (w_i x w_j) for all pairs (..., n, n)."""
+    x, y = axes[..., 0], axes[..., 1]
+    return x[..., :, None] * y[..., None, :] - y[..., :, None] * x[..., None, :]

@@ -1,0 +1,250 @@
+"""The skeleton: equations of motion and contact kinematics of one walker, by Drake.
+
+    M(q) q'' + bias(q, q') = gravity(q) + passive + B tau + C(q)^T lambda      (1), (16), (25)
+
+This is the only door to Drake's plant and its scalar types: arrays of floats go through the
+double plant, arrays of `AutoDiffXd` through its copy. Coordinates have the order and signs of
+`drakegait.walker.coordinates`; the contact rows are, for the right and then the left foot,
+heel x, y, z, toe x, y, z and the rotation about the vertical (yaw).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pydrake.math as scalar_math
+from pydrake.autodiffutils import AutoDiffXd
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import MultibodyPlant, MultibodyPlant_
+
+from drakegait.errors import BadFile
+from drakegait.walker import coordinates
+from drakegait.walker.contact_kinematics import FeetGeometry
+from drakegait.walker.dynamics_derivatives import Motion, inverse_dynamics_derivatives
+from drakegait.walker.model_file import CONTACT_FRAMES, OWN_MODEL, model_sdf
+from drakegait.walker.plant_door import PlantDoor
+from drakegait.walker.plant_tree import check_joints, read_tree
+from drakegait.walker.subject import AddedMass, Subject
+
+GRAVITY = 9.81
+"""Acceleration of gravity [m/s^2]."""
+
+NUM_CONTACT_ROWS = 14
+"""Contact rows: (heel x, y, z, toe x, y, z, yaw) of the right and the left foot."""
+
+POINT_ROWS = np.array([[0, 1, 2], [3, 4, 5], [7, 8, 9], [10, 11, 12]])
+"""Contact rows of each contact point: x, y, z."""
+
+YAW_ROWS = np.array([6, 13])
+"""Contact rows of the rotation of each foot about the vertical."""
+
+
+class Skeleton:
+    """Rigid bodies and joints of one walker.
+
+    Args:
+        sdf_text: an SDF model as `model_sdf` makes it.
+        kind: `"spatial"` (16 coordinates) or `"planar"` (9).
+
+    Attributes:
+        kind: as given.
+        coordinates: names of the coordinates, in order.
+        num_coordinates: how many.
+        plant: Drake's plant in double precision. Its own order of the coordinates may differ.
+        total_mass: of the body with all that is fixed to it [kg].
+
+    Raises:
+        BadFile: if the text is not a model of this skeleton; says what is wrong.
+
+    An instance keeps Drake contexts and must not be shared between threads.
+    """
+
+    def __init__(self, sdf_text: str, kind: str):
+        self.kind = kind
+        self.coordinates = coordinates.names(kind)
+        self.num_coordinates = len(self.coordinates)
+        self.plant = MultibodyPlant(time_step=0.0)
+        try:
+            Parser(self.plant).AddModelsFromString(sdf_text, "sdf")
+            self.plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -GRAVITY])
+            self.plant.Finalize()
+        except RuntimeError as error:
+            raise BadFile(OWN_MODEL, f"Drake cannot read the model: {error}") from None
+        self._order = check_joints(self.plant, self.coordinates)
+        self._tree = read_tree(self.plant, self.coordinates, GRAVITY)
+        self._feet = self._read_feet()
+        self.total_mass = float(self._tree.masses.sum())
+        self._double = self._open(self.plant, float)
+        self._autodiff: PlantDoor | None = None
+
+    @classmethod
+    def load(
+        cls,
+        kind: str,
+        subject: Subject | None = None,
+        added_masses: Sequence[AddedMass] = (),
+        text: str | None = None,
+    ) -> Skeleton:
+        """The skeleton of a subject (default 1.80 m, 75 kg), with masses fixed to it.
+
+        Args:
+            text: SDF text of your own in place of the shipped file, see `model_sdf`.
+        """
+        return cls(model_sdf(kind, subject or Subject(), added_masses, text), kind)
+
+    # Equations of motion. Leading axes (...) are instants.
+
+    def mass_matrix(self, q: np.ndarray) -> np.ndarray:
+        """M(q) (..., n, n) [kg, kg m, kg m^2]."""
+        return self._each(lambda door, q: door.mass_matrix(q), q)
+
+    def bias(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Centrifugal, Coriolis and gyroscopic forces (..., n), on the left-hand side [N, N m]."""
+        return self._each(lambda door, q, v: door.bias(q, v), q, v)
+
+    def gravity_forces(self, q: np.ndarray) -> np.ndarray:
+        """Generalised forces of gravity (..., n), on the right-hand side [N, N m]."""
+        return self._each(lambda door, q: door.gravity_forces(q), q)
+
+    def inverse_dynamics(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """M(q) a + bias(q, v) - gravity_forces(q) (..., n): forces that make the motion."""
+        return self._each(lambda door, q, v, a: door.inverse_dynamics(q, v, a), q, v, a)
+
+    def kinetic_energy(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Kinetic energy (...) [J]."""
+        return self._each(lambda door, q, v: door.kinetic_energy(q, v), q, v)
+
+    def potential_energy(self, q: np.ndarray) -> np.ndarray:
+        """Energy (...) of gravity, zero with the centre of mass on the ground [J]."""
+        return self.total_mass * GRAVITY * self.center_of_mass(q)[..., 2]
+
+    def residual_derivatives(
+        self, q: np.ndarray, v: np.ndarray, a: np.ndarray, multipliers: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Forces that the joints must supply, and their derivatives; floats only.
+
+            r = inverse_dynamics(q, v, a) - C(q)^T multipliers            (16), (25)
+
+        Args:
+            q, v, a: (..., n).
+            multipliers: (..., 14) contact forces [N] and yaw moments [N m] on the feet.
+
+        Returns:
+            r (..., n), dr/dq (..., n, n), dr/dv (..., n, n) and M = dr/da (..., n, n).
+            dr/dmultipliers is -contact_jacobian(q)^T.
+
+        One call for all instants of a gait is many times cheaper than one call each.
+        """
+        motion = self._motion(q)
+        r, dr_dq, dr_dv, mass = inverse_dynamics_derivatives(self._tree, motion, v, a)
+        jacobian = self._feet.jacobian(motion)
+        r = r - (np.asarray(multipliers)[..., None, :] @ jacobian)[..., 0, :]
+        return r, dr_dq - self._feet.force_derivative(motion, multipliers), dr_dv, mass
+
+    # Kinematics.
+
+    def contact_points(self, q: np.ndarray) -> np.ndarray:
+        """World positions (..., 4, 3) of heel_r, toe_r, heel_l, toe_l [m]."""
+        points = self._feet.contact_points(self._motion(q))
+        return points.reshape(*points.shape[:-3], 4, 3)
+
+    def contact_jacobian(self, q: np.ndarray) -> np.ndarray:
+        """C(q) (..., 14, n): velocities of the contact rows per unit speed of each coordinate.
+
+        The yaw row is e_z . angular velocity: its multiplier is a purely vertical moment.
+        """
+        return self._feet.jacobian(self._motion(q))
+
+    def contact_velocity_derivative(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
+        """Derivative (..., 14, n) of C(q) w with respect to q, w (..., n) held constant."""
+        return self._feet.velocity_derivative(self._motion(q), np.asarray(w))
+
+    def foot_yaw(self, q: np.ndarray) -> np.ndarray:
+        """Heading (..., 2) of both feet: atan2(d_y, d_x), d from heel to toe [rad].
+
+        Not differentiable where a foot is vertical.
+        """
+        points = self.contact_points(q)
+        along = points[..., 1::2, :] - points[..., 0::2, :]
+        return _arctan2(along[..., 1], along[..., 0])
+
+    def foot_yaw_gradient(self, q: np.ndarray) -> np.ndarray:
+        """Derivative (..., 2, n) of `foot_yaw`; not the yaw rows of C where a foot is tilted."""
+        motion = self._motion(q)
+        points = self._feet.contact_points(motion)
+        along = points[..., 1, :] - points[..., 0, :]
+        x, y = along[..., 0, None], along[..., 1, None]
+        rows = self._feet.jacobian(motion)
+        rows = rows.reshape(*rows.shape[:-2], 2, 7, -1)[..., :6, :]
+        change = rows[..., 3:, :] - rows[..., :3, :]
+        return (x * change[..., 1, :] - y * change[..., 0, :]) / (x * x + y * y)
+
+    def body_poses(self, q: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """Rotation (..., 3, 3) to world axes and origin (..., 3) [m] of each segment, by name."""
+        motion = self._motion(q)
+        return {
+            name: (motion.rotations[..., i, :, :], motion.origins[..., i, :])
+            for i, name in enumerate(self._tree.names)
+        }
+
+    def center_of_mass(self, q: np.ndarray) -> np.ndarray:
+        """Centre of mass (..., 3) of the whole walker in the world [m]."""
+        motion = self._motion(q)
+        places = motion.origins + (motion.rotations @ self._tree.coms[..., None])[..., 0]
+        return (self._tree.masses / self.total_mass) @ places
+
+    # The door to Drake.
+
+    def _read_feet(self) -> FeetGeometry:
+        tree = self._tree
+        feet = np.array([tree.names.index(name) for name in ("foot_r", "foot_l")])
+        points = []
+        for name in CONTACT_FRAMES:
+            frame = self.plant.GetFrameByName(name)
+            if frame.body().name() != f"foot_{name[-1]}":
+                raise BadFile(OWN_MODEL, f"frame {name!r} is not fixed to foot_{name[-1]}.")
+            points.append(frame.GetFixedPoseInBodyFrame().translation())
+        moves = tree.moves[:, feet].T
+        if not np.all(moves.any(axis=0)):
+            name = self.coordinates[int(np.argmin(moves.any(axis=0)))]
+            raise BadFile(OWN_MODEL, f"joint {name!r} moves neither foot.")
+        return FeetGeometry(tree.inner, moves, feet, np.array(points).reshape(2, 2, 3))
+
+    def _open(self, plant: MultibodyPlant_, scalar: type) -> PlantDoor:
+        bodies, moves_right = self._tree.names, self._feet.moves[0] > 0
+        return PlantDoor(plant, scalar, self._order, bodies, moves_right)
+
+    def _door(self, q: np.ndarray) -> PlantDoor:
+        if q.dtype != object:
+            return self._double
+        if self._autodiff is None:
+            self._autodiff = self._open(self.plant.ToAutoDiffXd(), AutoDiffXd)
+        return self._autodiff
+
+    def _each(self, function: Callable, *arrays: np.ndarray) -> np.ndarray:
+        """Call `function(door, *vectors)` for each instant, AutoDiff if one array is."""
+        arrays = tuple(np.asarray(x) for x in arrays)
+        if any(x.dtype == object for x in arrays):
+            arrays = tuple(_as_autodiff(x) for x in arrays)
+        door = self._door(arrays[0])
+        if arrays[0].ndim == 1:
+            return function(door, *arrays)
+        lead = arrays[0].shape[:-1]
+        flat = [x.reshape(-1, self.num_coordinates) for x in arrays]
+        results = np.array([function(door, *row) for row in zip(*flat, strict=True)])
+        return results.reshape(*lead, *results.shape[1:])
+
+    def _motion(self, q: np.ndarray) -> Motion:
+        q = np.asarray(q)
+        return self._door(q).motion(q)
+
+
+def _as_autodiff(values: np.ndarray) -> np.ndarray:
+    return values if values.dtype == object else np.vectorize(AutoDiffXd, otypes=[object])(values)
+
+
+def _arctan2(y: np.ndarray, x: np.ndarray) -> np.ndarray:
+    if y.dtype != object:
+        return np.arctan2(y, x)
+    return np.vectorize(scalar_math.arctan2, otypes=[object])(y, x)

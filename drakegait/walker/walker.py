@@ -1,0 +1,95 @@
+"""The person who walks: skeleton, muscles, passive joints and feet in one object."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from drakegait.walker import coordinates
+from drakegait.walker.feet import FootGeometry
+from drakegait.walker.metabolics import EnergySettings
+from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings
+from drakegait.walker.muscles import MuscleSet
+from drakegait.walker.passive_joints import PassiveJoints, PassiveSettings
+from drakegait.walker.skeleton import Skeleton
+from drakegait.walker.subject import AddedMass, Subject
+
+
+@dataclass(frozen=True)
+class Walker:
+    """A subject with everything that moves or holds it.
+
+    Attributes:
+        subject: height and mass.
+        skeleton: equations of motion and contact kinematics.
+        muscles: groups and paths.
+        muscle_functions: contraction, activation and energy of the groups.
+        energy_settings: constants of the energy model.
+        passive: elastic moments and damping of the joints.
+    """
+
+    subject: Subject
+    skeleton: Skeleton
+    muscles: MuscleSet
+    muscle_functions: MuscleFunctions
+    energy_settings: EnergySettings
+    passive: PassiveJoints
+
+    @classmethod
+    def build(
+        cls,
+        kind: str,
+        subject: Subject | None = None,
+        added_masses: tuple[AddedMass, ...] = (),
+        muscle_settings: MuscleSettings | None = None,
+        energy_settings: EnergySettings | None = None,
+        passive_settings: PassiveSettings | None = None,
+        strength: Mapping[str, float] | None = None,
+        planar_set: str = "table3",
+    ) -> Walker:
+        """Build the walker of a `"spatial"` or `"planar"` skeleton."""
+        subject = subject or Subject()
+        energy_settings = energy_settings or EnergySettings()
+        muscles = MuscleSet.load(kind, subject, planar_set=planar_set, strength=strength or {})
+        return cls(
+            subject=subject,
+            skeleton=Skeleton.load(kind, subject, added_masses),
+            muscles=muscles,
+            muscle_functions=MuscleFunctions(
+                muscles, muscle_settings or MuscleSettings(), energy_settings
+            ),
+            energy_settings=energy_settings,
+            passive=PassiveJoints(kind, subject, passive_settings or PassiveSettings()),
+        )
+
+    @property
+    def coordinate_names(self) -> tuple[str, ...]:
+        """Names of the coordinates, in order."""
+        return self.skeleton.coordinates
+
+    @cached_property
+    def is_rotation(self) -> np.ndarray:
+        """Mask (num_coordinates,) of the angles among the coordinates."""
+        return coordinates.rotations(self.skeleton.kind)
+
+    @cached_property
+    def foot(self) -> FootGeometry:
+        """Heel and toe along the sole, read from the skeleton."""
+        # In the neutral posture at the origin the ankles are above x = 0.
+        points = self.skeleton.contact_points(np.zeros(self.skeleton.num_coordinates))
+        return FootGeometry(heel=float(points[0, 0]), toe=float(points[1, 0]))
+
+    @cached_property
+    def coupling(self) -> np.ndarray:
+        """Which coordinates enter which joint torque (num_coordinates, num_coordinates).
+
+        In a tree, the torque at a joint of one leg depends on the motion of the trunk and
+        of that leg only.
+        """
+        legs = np.array([name[-2:] if name[-2:] in ("_r", "_l") else "" for name in
+                         self.coordinate_names])  # fmt: skip
+        opposite = (legs[:, None] != "") & (legs[None, :] != "") & (legs[:, None] != legs[None, :])
+        return ~opposite
