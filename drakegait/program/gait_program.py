@@ -8,7 +8,7 @@ wants), and `mathematical_program` writes the same rows as bindings of a Drake
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -78,7 +78,8 @@ class GaitProgram:
         self.selection = self._select()
         self._number_rows()
         self._number_entries()
-        self._cached: tuple[bytes, LocalState] | None = None
+        self._cached: tuple[np.ndarray, float, LocalState] | None = None
+        self.last_point_state: dict[int, tuple[np.ndarray, LocalState]] = {}
 
     # Sizes and names ---------------------------------------------------------------------
 
@@ -206,11 +207,16 @@ class GaitProgram:
 
     def state(self, x: np.ndarray) -> LocalState:
         """The physics at all control points for the design vector `x` (kept for one x)."""
-        key = x.tobytes() + np.float64(self.smoothing).tobytes()
-        if self._cached is None or self._cached[0] != key:
+        cached = self._cached
+        if cached is None or cached[1] != self.smoothing or not np.array_equal(cached[0], x):
             z = self.selection.values(x)
-            self._cached = key, LocalState(self.formulation, self.points, z, self.smoothing)
-        return self._cached[1]
+            state = LocalState(self.formulation, self.points, z, self.smoothing)
+            self._cached = cached = x.copy(), self.smoothing, state
+        return cached[2]
+
+    def last_state(self) -> tuple[np.ndarray, LocalState] | None:
+        """Design vector and physics of the last evaluation of all control points."""
+        return None if self._cached is None else (self._cached[0], self._cached[2])
 
     def cost(self, x: np.ndarray) -> float:
         """f of eq. (13)."""
@@ -223,16 +229,14 @@ class GaitProgram:
 
     def gradient(self, x: np.ndarray) -> np.ndarray:
         """df/dx (num_variables,)."""
-        state, total = self.state(x), np.zeros(self.num_variables + 1)
-        for cost in self.costs:
-            local = cost.gradient(state) * self.selection.factor[:, cost.columns]
-            index = self.selection.index[:, cost.columns]
-            total += np.bincount(
-                np.where(index >= 0, index, self.num_variables).ravel(),
-                local.ravel(),
-                self.num_variables + 1,
-            )
-        return total[:-1]
+        return np.sum([self.cost_gradient(cost, x) for cost in self.costs], axis=0)
+
+    def cost_gradient(self, cost: LocalCost, x: np.ndarray) -> np.ndarray:
+        """Gradient of one kind of cost (num_variables,)."""
+        local = cost.gradient(self.state(x)) * self.selection.factor[:, cost.columns]
+        index = self.selection.index[:, cost.columns]
+        index = np.where(index >= 0, index, self.num_variables).ravel()
+        return np.bincount(index, local.ravel(), self.num_variables + 1)[:-1]
 
     def rows(self, x: np.ndarray) -> np.ndarray:
         """Scaled values of all rows (num_constraints,)."""
@@ -261,8 +265,6 @@ class GaitProgram:
         values = self.design.unpack(x)
         if self.formulation.lifted:
             return values
-        from dataclasses import replace
-
         return replace(values, multipliers=self.state(x).multipliers)
 
     def violations(self, x: np.ndarray) -> np.ndarray:

@@ -68,6 +68,7 @@ class LocalState:
         self.formulation = formulation
         self.points = points
         self.smoothing = smoothing
+        self.results: dict[tuple[str, str], np.ndarray] = {}  # rows made from this state
         split = points.layout.split(z)
         self._coordinates, self._forces, self.time, self.placement, self._multipliers = split
         self.stride_time = self.time[:, :1]

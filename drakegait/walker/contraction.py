@@ -204,9 +204,7 @@ def _force_velocity(
         + F * K * gain * pull * pull * lengthening1
     )
     floor = settings.force_velocity_floor
-    above, slope, _ = _positive_part_and_slope(
-        math, g - floor, FORCE_VELOCITY_FLOOR_WIDTH * guard
-    )
+    above, slope, _ = _positive_part_and_slope(math, g - floor, FORCE_VELOCITY_FLOOR_WIDTH * guard)
     return floor + above, slope * g1
 
 

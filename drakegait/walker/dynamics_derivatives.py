@@ -2,7 +2,7 @@
 
 Drake supplies poses and joint axes in double precision; what remains are a few
 products of arrays. AutoDiffXd gives the same numbers (a test compares them) at
-about ten times the price.
+about eight times the price for the instants of a gait, twice for a single one.
 
 All spatial vectors are taken at the world origin in world axes, angular part
 first: the twist S_j = (w_j, v_j) of a coordinate, momentum and force (n, f).

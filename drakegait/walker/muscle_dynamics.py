@@ -163,7 +163,9 @@ class MuscleFunctions:
             (..., num_muscles, 6, 6), symmetric.
         """
         z = self._checked(z)
-        weights = np.ascontiguousarray(np.broadcast_to(weights, z.shape[:-1] + (NUM_OUTPUTS,)), float)
+        weights = np.ascontiguousarray(
+            np.broadcast_to(weights, z.shape[:-1] + (NUM_OUTPUTS,)), float
+        )
         (hessian,) = self._curvatures(smoothing, z, weights)
         return hessian.reshape(hessian.shape[:-1] + (NUM_INPUTS, NUM_INPUTS))
 

@@ -110,7 +110,9 @@ class MuscleSet:
         columns = coordinates.index(kind)
         if planar_set not in PLANAR_SETS:
             raise UnknownName("planar muscle set", planar_set, PLANAR_SETS)
-        rows = _read_table("muscles_spatial" if kind == "spatial" else f"muscles_planar_{planar_set}")
+        rows = _read_table(
+            "muscles_spatial" if kind == "spatial" else f"muscles_planar_{planar_set}"
+        )
         sided = [dict(row, side=side) for side in ("r", "l") for row in rows]
         names = tuple(f"{row['name']}_{row['side']}" for row in sided)
         groups = tuple(row["abbreviation"] for row in sided)
@@ -204,9 +206,7 @@ def _read_table(name: str) -> list[dict[str, str]]:
 
 def _select(name: str, names: tuple[str, ...], groups: tuple[str, ...]) -> list[int]:
     """Positions of the muscle `name`, or of both muscles of the group `name`."""
-    found = [
-        i for i, full in enumerate(names) if name in (full, full[:-2], groups[i])
-    ]
+    found = [i for i, full in enumerate(names) if name in (full, full[:-2], groups[i])]
     if not found:
         raise UnknownName("muscle", name, names)
     return found

@@ -147,7 +147,7 @@ class PassiveJoints:
 
 
 def _terms(model: str) -> list[tuple[str, float, float, dict[str, float]]]:
-    """Terms (joint, sign, offset, slopes) of sign exp(offset + slopes . q), one leg, plant signs."""
+    """Terms (joint, sign, offset, slopes) = sign exp(offset + slopes . q) of a leg, plant signs."""
     lateral = ("hip_adduction", "hip_rotation")
     if model == "double_exponential":
         return [term for joint in (*_SENSE, *lateral) for term in _double_exponential(joint)]

@@ -2,8 +2,8 @@
 
     M(q) q'' + bias(q, q') = gravity(q) + passive + B tau + C(q)^T lambda      (1), (16), (25)
 
-This is the only door to Drake's plant and its scalar types: arrays of floats go through the
-double plant, arrays of `AutoDiffXd` through its copy. Coordinates have the order and signs of
+Arrays of floats go through Drake's double plant, arrays of `AutoDiffXd` through its copy; methods
+that return derivatives take floats only. Coordinates have the order and signs of
 `drakegait.walker.coordinates`; the contact rows are, for the right and then the left foot,
 heel x, y, z, toe x, y, z and the rotation about the vertical (yaw).
 """
@@ -29,15 +29,6 @@ from drakegait.walker.subject import AddedMass, Subject
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s^2]."""
-
-NUM_CONTACT_ROWS = 14
-"""Contact rows: (heel x, y, z, toe x, y, z, yaw) of the right and the left foot."""
-
-POINT_ROWS = np.array([[0, 1, 2], [3, 4, 5], [7, 8, 9], [10, 11, 12]])
-"""Contact rows of each contact point: x, y, z."""
-
-YAW_ROWS = np.array([6, 13])
-"""Contact rows of the rotation of each foot about the vertical."""
 
 
 class Skeleton:
@@ -77,6 +68,7 @@ class Skeleton:
         self.total_mass = float(self._tree.masses.sum())
         self._double = self._open(self.plant, float)
         self._autodiff: PlantDoor | None = None
+        self._last: tuple[np.ndarray, Motion] | None = None
 
     @classmethod
     def load(
@@ -237,7 +229,12 @@ class Skeleton:
 
     def _motion(self, q: np.ndarray) -> Motion:
         q = np.asarray(q)
-        return self._door(q).motion(q)
+        if q.dtype == object:
+            return self._door(q).motion(q)
+        # The residual, its derivatives and the contact rows are asked for at the same q.
+        if self._last is None or not np.array_equal(self._last[0], q):
+            self._last = q.copy(), self._double.motion(q)
+        return self._last[1]
 
 
 def _as_autodiff(values: np.ndarray) -> np.ndarray:

@@ -1,9 +1,28 @@
-"""Muscle inputs for tests: random walking-like ones, and ones built from a fibre state."""
+"""Muscle inputs for tests (random as in walking, or built from a fibre state) and options."""
 
 import numpy as np
 
-from drakegait.walker.muscle_dynamics import MuscleSettings
+from drakegait.walker.metabolics import EnergySettings
+from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings
 from drakegait.walker.muscles import MuscleSet
+
+# Each option of the settings at least once.
+VARIANTS = {
+    "default": ({}, {}),
+    "constant_angle": ({"pennation_model": "constant_angle"}, {}),
+    "parallel_element": ({"parallel_element": "quadratic"}, {"model": "umberger2010"}),
+    "full_width": ({"width": "full"}, {"heat_floor": "activation"}),
+    "printed": ({"force_length": "printed"}, {"forbid_negative_power": True}),
+    "ft_dependent": ({"force_velocity": "ft_dependent"}, {"fast_speed": "hill"}),
+    "slope_factor": ({"slope_factor": 2.0}, {"recruitment": "orderly"}),
+    "fixed_times": ({"time_constants": "fixed"}, {"aerobic_scaling": 1.0}),
+}
+
+
+def variant(name: str, muscles: MuscleSet) -> MuscleFunctions:
+    """Functions with one of the groups of options."""
+    settings, energy = VARIANTS[name]
+    return MuscleFunctions(muscles, MuscleSettings(**settings), EnergySettings(**energy))
 
 
 def random_inputs(muscles: MuscleSet, num_instants: int, seed: int = 0) -> np.ndarray:

@@ -4,11 +4,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from muscle_cases import random_inputs
 
 from drakegait.walker.metabolics import EnergySettings, energy_rate
 from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings, muscle_constants
 from drakegait.walker.muscles import MuscleSet
-from muscle_cases import random_inputs
 
 MUSCLES = MuscleSet.load("spatial")
 
@@ -49,7 +49,9 @@ def test_drive_is_excitation_above_activation_and_the_mean_below():
 def test_slow_twitch_shortening_heat_is_capped_at_100_watts_per_kg():
     heat = rate(1.0, 1.0, -9.0, 0.0, aerobic_scaling=1.0).shortening_lengthening
     assert heat == pytest.approx(100.0)
-    assert rate(1.0, 1.0, -4.8, 0.0, aerobic_scaling=1.0).shortening_lengthening == pytest.approx(100)
+    assert rate(1.0, 1.0, -4.8, 0.0, aerobic_scaling=1.0).shortening_lengthening == pytest.approx(
+        100
+    )
     heat = rate(1.0, 1.0, -12.0, 1.0, aerobic_scaling=1.0).shortening_lengthening
     assert heat == pytest.approx(153.0)
 
@@ -104,7 +106,9 @@ def test_fast_speed_from_hill_constants_lowers_heat_by_5_percent():
 def test_orderly_recruitment_uses_slow_fibres_first():
     weak, strong = (rate(u, u, 0.0, 0.5, recruitment="orderly") for u in (0.01, 1.0))
     weak_all_slow = rate(0.01, 0.01, 0.0, 0.0)
-    assert weak.activation_maintenance == pytest.approx(weak_all_slow.activation_maintenance, rel=0.05)
+    assert weak.activation_maintenance == pytest.approx(
+        weak_all_slow.activation_maintenance, rel=0.05
+    )
     whole = rate(1.0, 1.0, 0.0, 0.5)
     assert strong.activation_maintenance == pytest.approx(whole.activation_maintenance)
 

@@ -54,10 +54,10 @@ def test_published_sagittal_moments(kind, side, angles, moments):
 def test_every_joint_is_pushed_back_at_both_ends_of_its_range(model, side):
     passive = PassiveJoints("spatial", settings=PassiveSettings(model=model))
     ends = {
-        "hip_flexion": (-40, 130),
+        "hip_flexion": (-60, 130),
         "knee_flexion": (-12, 160),
         "ankle_dorsiflexion": (-60, 40),
-        "hip_adduction": (-45, 45),
+        "hip_adduction": (-50, 50),
         "hip_rotation": (-75, 75),
     }
     for joint, (low, high) in ends.items():
@@ -104,7 +104,7 @@ def test_derivatives_agree_with_differences(kind, model):
         change = (passive.forces(q, v + e) - passive.forces(q, v - e)) / 2
         np.testing.assert_allclose(np.broadcast_to(dv[:, i], (3, n)), change, atol=1e-9)
     # One instant gives what many give.
-    np.testing.assert_array_equal(passive.forces(q, v)[1], passive.forces(q[1], v[1]))
+    np.testing.assert_allclose(passive.forces(q, v)[1], passive.forces(q[1], v[1]), rtol=1e-12)
 
 
 def test_terms_grow_only_linearly_far_outside_the_range():
@@ -112,7 +112,9 @@ def test_terms_grow_only_linearly_far_outside_the_range():
     q = posture("spatial", knee_flexion=-120.0)
     far = [passive.forces(k * q, 0 * q) for k in (1.0, 2.0, 3.0)]
     assert np.all(np.isfinite(far))
-    np.testing.assert_allclose(far[2] - far[1], far[1] - far[0], rtol=1e-3, atol=1.0)
+    first, second, third = np.array(far)[:, coordinates.position("spatial", "knee_flexion_r")]
+    assert third - second == pytest.approx(second - first, rel=1e-6)
+    assert third < 3e4
 
 
 def test_damping_takes_power_from_knee_and_hip_only():

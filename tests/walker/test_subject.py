@@ -183,9 +183,9 @@ def test_coordinates_have_the_order_of_the_paper_and_mirror_to_themselves():
         np.testing.assert_array_equal(twice, q)
         back = coordinates.to_plant(kind, coordinates.to_anatomical(kind, q))
         np.testing.assert_array_equal(back, q)
-        assert [coordinates.position(kind, c.paper_name) for c in coordinates.coordinates(kind)] == [
-            *range(q.shape[-1])
-        ]
+        assert [
+            coordinates.position(kind, c.paper_name) for c in coordinates.coordinates(kind)
+        ] == [*range(q.shape[-1])]
         assert len(coordinates.joint_angles(kind)) == {"spatial": 10, "planar": 6}[kind]
     # In anatomical signs the legs of a mirrored posture simply change places.
     q = rng.normal(size=16)

@@ -1,0 +1,51 @@
+"""How a solve ended, in words that a user understands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+STATUSES = (
+    "converged",
+    "acceptable",
+    "iteration_limit",
+    "time_limit",
+    "interrupted",
+    "infeasible",
+    "failed",
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The end of a solve.
+
+    Attributes:
+        solver: `"ipopt"`, `"snopt"`, `"ipopt-mumps"`.
+        status: one of `STATUSES`.
+        message: what happened, in a sentence.
+        iterations: of the solver, all rounds together.
+        wall_time: seconds in the solver.
+        setup_time: seconds for building the program and the guess.
+        num_variables, num_constraints, jacobian_nonzeros: size of the program.
+        worst: rows that hold least, in gait terms; empty if all hold.
+        advice: what to try next; empty if converged.
+        refinements: one sentence for each round of added control points.
+    """
+
+    solver: str
+    status: str
+    message: str
+    iterations: int
+    wall_time: float
+    setup_time: float
+    num_variables: int
+    num_constraints: int
+    jacobian_nonzeros: int
+    worst: tuple[str, ...] = ()
+    advice: str = ""
+    refinements: tuple[str, ...] = ()
+
+    @property
+    def converged(self) -> bool:
+        """Whether the solver met its tolerances; "acceptable" is not converged."""
+        return self.status == "converged"
