@@ -79,7 +79,6 @@ class GaitProgram:
         self._number_rows()
         self._number_entries()
         self._cached: tuple[np.ndarray, float, LocalState] | None = None
-        self.last_point_state: dict[int, tuple[np.ndarray, LocalState]] = {}
 
     # Sizes and names ---------------------------------------------------------------------
 
@@ -158,13 +157,13 @@ class GaitProgram:
         return which, shift
 
     def _number_rows(self) -> None:
-        self._row_numbers, lower, upper, scale, units = [], [], [], [], []
+        self.row_numbers, lower, upper, scale, units = [], [], [], [], []
         total = 0
         for constraint in self.constraints:
             numbers = np.full(constraint.applies.shape, -1)
             count = int(constraint.applies.sum())
             numbers[constraint.applies] = total + np.arange(count)
-            self._row_numbers.append(numbers)
+            self.row_numbers.append(numbers)
             columns = np.nonzero(constraint.applies)[1]
             lower.append(constraint.lower[columns])
             upper.append(constraint.upper[columns])
@@ -181,7 +180,7 @@ class GaitProgram:
     def _number_entries(self) -> None:
         """Positions of the Jacobian's entries, and where each local derivative goes."""
         rows, columns, self._kept, factors = [], [], [], []
-        for constraint, numbers in zip(self.constraints, self._row_numbers, strict=True):
+        for constraint, numbers in zip(self.constraints, self.row_numbers, strict=True):
             row = numbers[:, constraint.rows]
             column = self.selection.index[:, constraint.columns]
             kept = (row >= 0) & (column >= 0)

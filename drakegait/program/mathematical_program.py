@@ -1,9 +1,10 @@
 """The same program as bindings of Drake's `MathematicalProgram`.
 
-One constraint binding per law and control point, over that point's own
-variables only, with its sparsity declared; one cost binding per kind of cost.
-Everything between the AutoDiffXd vectors of a binding is plain floats
-(`ExtractValue` in, `InitializeAutoDiff` out).
+One constraint binding per control point with all laws that hold there, over
+that point's own variables only and with its sparsity declared; one cost
+binding per kind of cost. Everything between the AutoDiffXd vectors of a
+binding is plain floats (`ExtractValue` in, `InitializeAutoDiff` out): packing
+those vectors is what costs time, so a binding per law would be four times slower.
 
 Drake calls the bindings one by one, while our arrays are cheapest for all
 control points together. A cost binding sees the whole design vector and
@@ -34,13 +35,15 @@ class DrakeProgram:
     Attributes:
         program: to be handed to any of Drake's solvers.
         variables: the scaled design vector.
-        constraints: bindings in the order of the rows of `GaitProgram`.
+        constraints: one binding per control point, then that of the timing rows.
+        rows: number in `GaitProgram` of each row of `constraints`, binding by binding.
         costs: one binding per kind.
     """
 
     program: MathematicalProgram
     variables: np.ndarray
     constraints: tuple[Binding[Constraint], ...]
+    rows: np.ndarray
     costs: tuple[Binding[Cost], ...]
 
 
@@ -57,14 +60,15 @@ def mathematical_program(gait_program: GaitProgram) -> DrakeProgram:
         _add_cost(program, _CostEvaluator(gait_program, cost), variables)
         for cost in gait_program.costs
     )
-    constraints = []
-    for constraint in gait_program.constraints:
-        for point in range(gait_program.points.num):
-            if constraint.applies[point].any():
-                evaluator = _PointEvaluator(gait_program, constraint, point)
-                constraints.append(_add_constraint(program, evaluator, variables))
-    constraints.append(_add_constraint(program, _TimingEvaluator(gait_program), variables))
-    return DrakeProgram(program, variables, tuple(constraints), costs)
+    points = [_PointEvaluator(gait_program, k) for k in range(gait_program.points.num)]
+    timing = _TimingEvaluator(gait_program)
+    constraints = tuple(
+        _add_constraint(program, evaluator, variables) for evaluator in (*points, timing)
+    )
+    first = gait_program.first_timing_row
+    rows = [point.row_numbers for point in points]
+    rows.append(np.arange(first, gait_program.num_constraints))
+    return DrakeProgram(program, variables, constraints, np.concatenate(rows), costs)
 
 
 def _add_cost(
@@ -110,29 +114,34 @@ def _is_identity(x: np.ndarray) -> bool:
 
 
 class _PointEvaluator:
-    """The rows of one law at one control point, as a function of that point's variables."""
+    """All rows of one control point as a function of that point's variables."""
 
-    def __init__(self, program: GaitProgram, constraint: LocalRows, point: int):
-        self._program, self._constraint, self._point = program, constraint, point
+    def __init__(self, program: GaitProgram, point: int):
+        self._program, self._point = program, point
         self._points = program.points.only(point)
-        holds = constraint.applies[point]
-        self._holds = holds
-        self.lower, self.upper = constraint.lower[holds], constraint.upper[holds]
-        self.name = f"{constraint.kind} | {program.place_name(point)}"
-        number = np.cumsum(holds) - 1
-        local = program.selection.index[point]
-        # The variables that determine the physics at this point, in the solver's order.
+        self.name = f"laws of walking | {program.place_name(point)}"
+        selection = program.selection
+        local = selection.index[point]
         self.index, place = np.unique(local, return_inverse=True)
         if self.index[0] == -1:
             self.index, place = self.index[1:], place - 1
         self._place, self._is_variable = place, local >= 0
-        self._factor = program.selection.factor[point]
-        self._constant = program.selection.constant[point]
-        kept = holds[constraint.rows] & self._is_variable[constraint.columns]
-        self._kept = np.flatnonzero(kept)
-        self.rows = number[constraint.rows[kept]]
-        self.columns = place[constraint.columns[kept]]
-        self._entry_factor = self._factor[constraint.columns[kept]]
+        self._factor, self._constant = selection.factor[point], selection.constant[point]
+        self._holds = [constraint.applies[point] for constraint in program.constraints]
+        self.row_numbers = np.concatenate([n[point][n[point] >= 0] for n in program.row_numbers])
+        self.lower = program.lower[self.row_numbers]
+        self.upper = program.upper[self.row_numbers]
+        rows, columns, factors, self._kept, total = [], [], [], [], 0
+        for constraint, holds in zip(program.constraints, self._holds, strict=True):
+            number = total + np.cumsum(holds) - 1
+            total += int(holds.sum())
+            kept = np.flatnonzero(holds[constraint.rows] & self._is_variable[constraint.columns])
+            self._kept.append(kept)
+            rows.append(number[constraint.rows[kept]])
+            columns.append(place[constraint.columns[kept]])
+            factors.append(self._factor[constraint.columns[kept]])
+        self.rows, self.columns = np.concatenate(rows), np.concatenate(columns)
+        self._entry_factor = np.concatenate(factors)
         self._flat = self.rows * len(self.index) + self.columns
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
@@ -140,16 +149,23 @@ class _PointEvaluator:
             return self._values(*self._state(x))
         value = ExtractValue(x)[:, 0]
         state, at = self._state(value)
-        entries = self._jacobian_entries(state, at) * self._entry_factor
+        entries = np.concatenate(
+            [
+                _once(state, constraint, "jacobian")[at][kept]
+                for constraint, kept in zip(self._program.constraints, self._kept, strict=True)
+            ]
+        )
         shape = (len(self.lower), len(self.index))
-        jacobian = np.bincount(self._flat, entries, shape[0] * shape[1]).reshape(shape)
-        return _with_derivatives(x, self._values(state, at), jacobian)
+        entries = np.bincount(self._flat, entries * self._entry_factor, shape[0] * shape[1])
+        return _with_derivatives(x, self._values(state, at), entries.reshape(shape))
 
     def _values(self, state: LocalState, at: int) -> np.ndarray:
-        return _once(state, self._constraint, "values")[at][self._holds]
-
-    def _jacobian_entries(self, state: LocalState, at: int) -> np.ndarray:
-        return _once(state, self._constraint, "jacobian")[at][self._kept]
+        return np.concatenate(
+            [
+                _once(state, constraint, "values")[at][holds]
+                for constraint, holds in zip(self._program.constraints, self._holds, strict=True)
+            ]
+        )
 
     def _state(self, value: np.ndarray) -> tuple[LocalState, int]:
         """The physics for these variables and this point's position in it."""
@@ -157,14 +173,9 @@ class _PointEvaluator:
         shared = program.last_state()
         if shared is not None and np.array_equal(shared[0][self.index], value):
             return shared[1], self._point
-        own = program.last_point_state.get(self._point)
-        if own is None or not np.array_equal(own[0], value):
-            padded = np.where(self._is_variable, value[self._place], 0.0)
-            z = self._constant + self._factor * padded
-            state = LocalState(program.formulation, self._points, z[None], program.smoothing)
-            own = value.copy(), state
-            program.last_point_state[self._point] = own
-        return own[1], 0
+        padded = np.where(self._is_variable, value[self._place], 0.0)
+        z = self._constant + self._factor * padded
+        return LocalState(program.formulation, self._points, z[None], program.smoothing), 0
 
 
 def _once(state: LocalState, constraint: LocalRows, what: str) -> np.ndarray:

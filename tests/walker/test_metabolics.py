@@ -147,6 +147,15 @@ def test_work_rate_is_force_times_shortening_speed_of_the_fibres():
     assert work == pytest.approx(-z[..., 0] * z[..., 4], rel=1e-9)
 
 
+def test_fast_speed_of_each_muscle():
+    fixed, hill = (
+        muscle_constants(MUSCLES, MuscleSettings(), EnergySettings(fast_speed=s)).fast_speed
+        for s in ("fixed", "hill")
+    )
+    assert fixed == pytest.approx(np.full(28, 12.0))
+    assert hill == pytest.approx(np.full(28, 5.2 / 0.41))
+
+
 def test_mass_follows_tension_and_density():
     energy = EnergySettings(specific_tension=0.5e6, density=1000.0)
     mass = muscle_constants(MUSCLES, MuscleSettings(), energy).mass

@@ -8,6 +8,7 @@ from muscle_cases import VARIANTS, fibre_inputs, random_inputs, variant
 from scipy.optimize import brentq
 
 from drakegait.errors import InvalidInput
+from drakegait.walker.contraction import tendon_stretch
 from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings
 from drakegait.walker.muscles import MuscleSet
 
@@ -76,6 +77,25 @@ def test_one_instant_and_many_agree(name):
         assert (np.abs(one_jacobian - jacobian[i]) / scale).max() < 1e-8
         scale = np.abs(hessian[i]).max(axis=(-1, -2), keepdims=True)
         assert (np.abs(functions.hessian(z[i], weights[i], 2.0) - hessian[i]) / scale).max() < 1e-7
+
+
+def test_smoothing_never_moves_the_bounds_on_excitation():
+    """Wider corners make the energy easier, not the muscles weaker or stronger."""
+    z = random_inputs(SPATIAL, 80)
+    normal, wide = (FUNCTIONS.evaluate(z, s)[..., :2] for s in (1.0, 30.0))
+    assert wide == pytest.approx(normal, rel=1e-12)
+
+
+def test_tendon_goes_on_gently_below_zero_force():
+    settings = MuscleSettings()
+    x = np.array([-1.0, -2e-3, -5e-4, 0.0, 1.0])
+    strain, slope, _ = tendon_stretch(np, settings, x, np.ones(5), np.zeros(5))
+    assert strain[3:] == pytest.approx([0.0, settings.tendon_strain])
+    assert (np.diff(strain) > 0).all()
+    assert slope[0] < 2 * slope[3]
+    h = 1e-9
+    up, down = (tendon_stretch(np, settings, x + s * h, 1.0, 0.0)[0] for s in (1, -1))
+    assert (up - down) / (2 * h) == pytest.approx(slope, rel=1e-5)
 
 
 def test_any_leading_axes_and_changing_smoothing():

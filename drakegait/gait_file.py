@@ -1,0 +1,194 @@
+"""`gait.nc`: a gait as a netCDF file that stands alone.
+
+The root holds the sampled arrays with their units, for any program that reads netCDF (open it
+with `xarray.open_dataset`), and the study, the outcome and the check as JSON in its attributes.
+The group `design` holds the unknowns from which everything is computed anew on loading; the group
+`reference` the walk to compare with, if it is not the embedded one.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from drakegait.check import CheckReport
+from drakegait.errors import BadFile, DrakegaitError
+from drakegait.gait import Gait
+from drakegait.reference.curves import SampledCurves, SplineCurves
+from drakegait.reference.reference import DeviationSettings, Reference
+from drakegait.solvers.outcome import Outcome
+from drakegait.study import GaitStudy
+from drakegait.summary import versions
+from drakegait.transcription.design_vector import DesignValues
+from drakegait.transcription.foot_placement import FootPlacement
+from drakegait.transcription.splines import PeriodicQuintic
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FORMAT = "drakegait gait"
+FORMAT_VERSION = 1
+_DESIGN_DIMS = {
+    "coordinate_coefficients": ("coordinate", "coefficient"),
+    "force_coefficients": ("muscle", "coefficient"),
+    "stride_time": (),
+    "events": ("phase",),
+    "placement": ("placement_parameter",),
+    "multipliers": ("control_point", "contact_row"),
+}
+# Dense enough that a fitted spline is the same curve for every purpose (errors < 1e-7 rad).
+_REFERENCE_NODES = 201
+_FORCE_INTERVALS = 1200  # a multiple of the usual tables' 50, 100, 200: then exact
+
+
+def save(gait: Gait, path: str | Path) -> None:
+    """Write `gait` to `path`, beside it first and renamed when complete.
+
+    Raises:
+        BadFile: the folder does not exist or cannot be written to.
+    """
+    import xarray as xr
+
+    path = Path(path)
+    if path.is_dir():
+        raise BadFile(path, "is a folder, not a file to write.")
+    root = gait.sample()
+    root.attrs |= {
+        "title": f"{gait.study.model} walking at {gait.speed:.3g} m/s",
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        "study": _text(gait.study.to_dict()),
+        "outcome": _text(dataclasses.asdict(gait.outcome)),
+        "cost": _text(dict(gait.cost)),
+        "check": _text(None if gait.report is None else gait.report.to_dict()),
+        "versions": _text(versions()),
+    }
+    design = {
+        name: (dims, np.asarray(getattr(gait.values, name), dtype=float))
+        for name, dims in _DESIGN_DIMS.items()
+    }
+    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        root.to_netcdf(beside, engine="h5netcdf")
+        xr.Dataset(design).to_netcdf(beside, mode="a", group="design", engine="h5netcdf")
+        if gait.study.reference is not None:
+            reference = _reference_dataset(gait.study.reference)
+            reference.to_netcdf(beside, mode="a", group="reference", engine="h5netcdf")
+        os.replace(beside, path)
+    except OSError as error:
+        reason = error.strerror or str(error).splitlines()[0]
+        raise BadFile(path, f"cannot be written ({reason}).") from None
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def load(path: str | Path) -> Gait:
+    """Read a gait that `save` has written.
+
+    Raises:
+        BadFile: missing, damaged, foreign, or of a newer format.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise BadFile(path, "is a folder." if path.is_dir() else "does not exist.")
+    attributes, groups = _read(path)
+    if attributes.get("format") != FORMAT:
+        raise BadFile(path, "is a netCDF file, but not a gait of drakegait.")
+    version = attributes.get("format_version")
+    if version != FORMAT_VERSION:
+        raise BadFile(path, f"has format {version}, but this drakegait reads {FORMAT_VERSION}.")
+    try:
+        reference = _reference(groups["reference"]) if "reference" in groups else None
+        study = GaitStudy.from_dict(json.loads(attributes["study"]), reference)
+        design = {name: groups["design"][0][name] for name in _DESIGN_DIMS}
+        if not all(np.isfinite(array).all() for array in design.values()):
+            raise ValueError("numbers that are not finite")
+        design["stride_time"] = float(design["stride_time"])
+        outcome = json.loads(attributes["outcome"])
+        lists = {name: tuple(x) for name, x in outcome.items() if isinstance(x, list)}
+        report = json.loads(attributes["check"])
+        return Gait(
+            study=study,
+            values=DesignValues(**design),
+            outcome=Outcome(**{**outcome, **lists}),
+            cost=json.loads(attributes["cost"]),
+            report=None if report is None else CheckReport.from_dict(report),
+        )
+    except KeyError as error:
+        raise BadFile(path, f"is damaged: {error} is missing.") from None
+    except (DrakegaitError, TypeError, ValueError) as error:
+        raise BadFile(path, f"is damaged: {error}") from None
+
+
+Group = tuple[dict[str, np.ndarray], dict[str, Any]]
+
+
+def _read(path: Path) -> tuple[dict[str, Any], dict[str, Group]]:
+    """Attributes of the root, and arrays and attributes of the groups."""
+    import h5netcdf  # alone: reading needs nothing of xarray, which is slow to import
+
+    try:
+        with h5netcdf.File(path, "r") as file:
+            groups = {
+                name: (
+                    {key: np.array(variable[...]) for key, variable in group.variables.items()},
+                    dict(group.attrs),
+                )
+                for name, group in file.groups.items()
+            }
+            return dict(file.attrs), groups
+    except Exception:  # noqa: BLE001 - h5py raises almost anything on a damaged file
+        raise BadFile(path, "cannot be read: damaged, or not a netCDF file.") from None
+
+
+def _text(plain: Any) -> str:
+    return json.dumps(plain, default=lambda number: number.item())
+
+
+def _reference_dataset(reference: Reference) -> xr.Dataset:
+    import xarray as xr
+
+    motion = reference.motion
+    if isinstance(motion, SplineCurves):
+        coefficients = motion.coefficients
+    else:
+        spline = PeriodicQuintic(_REFERENCE_NODES)
+        coefficients = spline.coefficients(reference.coordinate_values(spline.node_times).T)
+    arrays = {"coefficients": (("coordinate", "coefficient"), coefficients)}
+    if reference.forces is not None:
+        tau = np.linspace(0.0, 1.0, _FORCE_INTERVALS + 1)
+        forces = reference.ground_reactions(tau).reshape(len(tau), 6)
+        arrays["forces"] = (("instant", "force"), forces)
+    facts = {
+        "kind": reference.kind,
+        "name": reference.name,
+        "stride_time": reference.stride_time,
+        "phase_fractions": list(reference.phase_fractions),
+        "foot_placement": dataclasses.asdict(reference.foot_placement),
+        "deviation": reference.deviation.to_dict(),
+    }
+    return xr.Dataset(arrays, attrs={"facts": _text(facts)})
+
+
+def _reference(group: Group) -> Reference:
+    arrays, facts = group[0], json.loads(group[1]["facts"])
+    coefficients = arrays["coefficients"]
+    forces = arrays.get("forces")
+    if forces is not None:
+        forces = np.vstack([forces[:-1], forces[:1]])  # the ends agree but for rounding
+        forces = SampledCurves(np.linspace(0.0, 1.0, len(forces)), forces)
+    return Reference(
+        kind=facts["kind"],
+        name=facts["name"],
+        stride_time=facts["stride_time"],
+        phase_fractions=tuple(facts["phase_fractions"]),
+        foot_placement=FootPlacement(**facts["foot_placement"]),
+        motion=SplineCurves(PeriodicQuintic(coefficients.shape[1] + 1), coefficients),
+        forces=forces,
+        deviation=DeviationSettings(**facts["deviation"]),
+    )

@@ -1,0 +1,31 @@
+"""How hard to try: choices that change the way to an answer, not the question."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from drakegait.settings import Settings, choice, quantity
+
+SOLVERS = ("ipopt-mumps", "ipopt", "snopt")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolverOptions(Settings):
+    """Options of all solvers.
+
+    The optimality tolerance is on the scaled KKT conditions; rows count as held when they are
+    within `feasibility` of their bounds in units of their own tolerance.
+    """
+
+    solver: str = choice(
+        "ipopt-mumps",
+        SOLVERS,
+        "ipopt-mumps: IPOPT with MUMPS, sparse arrays; ipopt, snopt: Drake's own solvers",
+    )
+    optimality: float = quantity(1e-3, "-", 1e-8, 1e-1, "tolerance on the scaled KKT conditions")
+    feasibility: float = quantity(1e-3, "-", 1e-8, 1e-1, "violation of a row, in its tolerances")
+    max_iterations: float = quantity(500, "-", 1, 1e5, "iterations in one round")
+    time_limit: float = quantity(3600.0, "s", 0.1, 1e6, "wall time of the whole solve")
+    barrier_start: float = quantity(
+        0.0, "-", 0.0, 10.0, "first barrier parameter of IPOPT; 0: chosen by it (warm: small)"
+    )
