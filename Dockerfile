@@ -1,11 +1,11 @@
 # drakegait in a container: pinned Python packages, an ordinary user, results in a mounted folder.
 #
 # Build:  docker build -t drakegait .
-# Run:    mkdir -p out && docker run --rm --init --user "$(id -u):$(id -g)" \
+# Run:    mkdir -p out && docker run --rm -it --init --user "$(id -u):$(id -g)" \
 #             -v "$PWD/out:/out" drakegait walk --out /out/walk
 #
 # The files of the run are then in out/walk. Any drakegait command may stand in place of `walk ...`;
-# paths are relative to /out. `--init` lets Ctrl-C end a solve with the best gait so far. A replay
+# paths are relative to /out. Ctrl-C ends a solve with the best gait so far. A replay
 # that is watched live needs its port too: --publish 7000:7000.
 #
 # Pinned: the base image by digest, every Python package by version and hash (requirements/run.txt).

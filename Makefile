@@ -14,7 +14,7 @@ JOBS ?= 2
 ARGS ?=
 
 PY := $(VENV)/bin/python
-PIP := $(PY) -m pip install --quiet --disable-pip-version-check
+PIP := $(PY) -m pip install -qq --disable-pip-version-check
 PYTEST := OMP_NUM_THREADS=1 MPLBACKEND=Agg $(PY) -m pytest -n $(JOBS) --dist loadfile
 
 # Drake's IPOPT factorises with SPRAL, which asks for this before the first import.
@@ -49,7 +49,8 @@ lint: $(VENV)/test.stamp
 $(VENV)/run.stamp: pyproject.toml requirements/run.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
 	  echo "drakegait needs Python >= 3.11, but '$(PYTHON)' is" \
-	    "$$($(PYTHON) --version 2>&1 || true); give another one: make PYTHON=python3.12"; exit 1; }
+	    "$$($(PYTHON) --version 2>/dev/null || echo not there);" \
+	    "give another one: make PYTHON=python3.12"; exit 1; }
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
 	  echo "'$(PYTHON)' cannot make environments: install its venv module" \
 	    "(Debian and Ubuntu: apt-get install python3-venv)"; exit 1; }
@@ -58,6 +59,9 @@ $(VENV)/run.stamp: pyproject.toml requirements/run.txt
 	@$(PYTHON) -m venv $(VENV)
 	@$(PIP) --require-hashes -r requirements/run.txt
 	@$(PIP) --no-deps --no-build-isolation --editable .
+	@$(PY) -c 'import pydrake.math' 2>/dev/null || { \
+	  echo "Drake does not start here; mostly the system lacks GLib" \
+	    "(Debian and Ubuntu: apt-get install libglib2.0-0)"; exit 1; }
 	@touch $@
 
 $(VENV)/test.stamp: $(VENV)/run.stamp requirements/test.txt

@@ -132,9 +132,9 @@ class CheckReport:
         return self._value("friction_ratio_max")
 
     @property
-    def free_moment_ratio_max(self) -> float:
-        """Largest pivot moment relative to what the ground can hold; 0 for a planar walker."""
-        return self._value("free_moment_ratio_max")
+    def free_moment_excess_Nm(self) -> float:  # noqa: N802
+        """Largest pivot moment beyond what the ground can hold [N m]; not above 0 if planar."""
+        return self._value("free_moment_excess_Nm")
 
     @property
     def normal_force_min_N(self) -> float:  # noqa: N802

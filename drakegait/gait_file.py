@@ -40,6 +40,7 @@ _DESIGN_DIMS = {
     "events": ("phase",),
     "placement": ("placement_parameter",),
     "multipliers": ("control_point", "contact_row"),
+    "residuals": ("control_point", "coordinate"),
 }
 # Dense enough that a fitted spline is the same curve for every purpose (errors < 1e-7 rad).
 _REFERENCE_NODES = 201

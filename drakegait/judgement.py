@@ -142,7 +142,7 @@ def equations_of_motion(judged: Judged) -> list[CheckItem]:
 
 
 def foot_contact(judged: Judged) -> list[CheckItem]:
-    """Standing heel and toe against the footprints, eq. (28), and depth in the ground."""
+    """Standing heel and toe against the footprints (item 9 of the paper's 3.3), and depth in the ground."""
     study, points = judged.gait.study, judged.contact_points
     tolerance = study.tolerances.contact_tolerance
     rows = np.zeros((len(points), feet.NUM_ROWS))
@@ -179,7 +179,7 @@ def muscles(judged: Judged) -> list[CheckItem]:
 
 
 def ground_forces(judged: Judged) -> list[CheckItem]:
-    """The ground only pushes and holds no more than friction allows, MODEL 6.8 and 6.9."""
+    """The ground only pushes and holds no more than friction allows, docs/formulation.md 6.9."""
     contact, loads = judged.gait.study.contact, judged.loads
     force, by_point = loads.ground_reactions, loads.point_forces[..., 2]
     active = loads.active.reshape(-1, 2, feet.ROWS_PER_FOOT)
@@ -189,18 +189,17 @@ def ground_forces(judged: Judged) -> list[CheckItem]:
     # The pivot is the heel while it is down, then the toe.
     arm = np.full(by_point.shape, contact.patch_radius)
     arm[..., 1] += np.where(active[..., 2], judged.walker.foot.length, 0.0)
-    # A moment below the tolerance of the equations of motion cannot be told from none.
-    hold = contact.friction * np.sum(arm * by_point, axis=2)
-    hold = np.maximum(hold, judged.gait.study.tolerances.moment_tolerance)
-    twist = np.where(standing, np.abs(loads.pivot_moments) / hold, -np.inf)
+    # Beyond the grip, a free moment is one more unexplained moment: judged by that tolerance.
+    hold = contact.friction * np.sum(arm * np.maximum(by_point, 0.0), axis=2)
+    twist = np.where(standing, np.abs(loads.pivot_moments) - hold, -np.inf)
+    spare = SLACK * judged.gait.study.tolerances.moment_tolerance
     loaded = np.where(
         loads.active[:, list(feet.VERTICAL_ROWS)], by_point.reshape(-1, 4), np.inf
     )
     names = ("right foot", "left foot")
     return [
         judged.worst("friction_ratio_max", "friction used", slip, "", 1.0 + GRIP_SLACK, names),
-        judged.worst("free_moment_ratio_max", "free moment used", twist, "", 1.0 + GRIP_SLACK,
-                     names),
+        judged.worst("free_moment_excess_Nm", "free moment beyond grip", twist, "N m", spare, names),
         judged.worst("normal_force_min_N", "smallest vertical force", loaded, "N",
                      -LEAST_LOAD * judged.body_weight, feet.POINT_NAMES, largest=False),
     ]  # fmt: skip

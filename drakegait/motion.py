@@ -42,7 +42,7 @@ class Motion:
 
         Args:
             coordinates: value and first two derivatives by tau, (K, num_coordinates) each, hat_x
-                without the advance stride_length * tau of MODEL 6.7.
+                without the advance stride_length * tau of docs/formulation.md 6.7.
             forces: likewise (K, num_muscles).
         """
         q, v, a = (x / stride_time**order for order, x in enumerate(coordinates))

@@ -60,7 +60,8 @@ _LEGEND = """
       const phase = walk.events.filter((event) => event <= share + 1e-9).length;
       walkPause.textContent = viewer.animator.playing ? "Pause" : "Play";
       document.getElementById("walk-phase").textContent =
-        `${{Math.floor(100 * share)}} % of the cycle, phase ${{phase}}: ${{walk.phases[phase - 1]}}`;
+        `${{Math.floor(100 * share)}} % of the cycle, phase ${{phase}}: `
+        + walk.phases[phase - 1];
     }}, 60);
   </script>
 """
@@ -120,7 +121,7 @@ def _with_legend(page: str, gait: Gait) -> str:
     worn = "".join(f", {item.mass:g} kg on {item.segment}" for item in study.added_masses)
     title = (
         f"{study.model} model, {study.subject.height:.2f} m, {study.subject.mass:g} kg{worn}; "
-        f"{gait.speed:.2f} m/s, stride {gait.stride_length:.2f} m in {gait.values.stride_time:.2f} s"
+        f"{gait.speed:.2f} m/s, stride {gait.stride_length:.2f} m in {gait.stride_time:.2f} s"
     )
     state = "" if gait.converged else "<br><b>This gait has not converged.</b>"
     legend = _LEGEND.format(

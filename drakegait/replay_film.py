@@ -76,12 +76,12 @@ class Film:
         """Colour of each muscle (K, num_muscles, 3)."""
         return activation_colours(self.activation)
 
-    @property
-    def start(self) -> float:
-        """Forward position of a viewer who travels beside the hips, at the first frame [m]."""
+    def viewer(self, frame: np.ndarray | int) -> np.ndarray:
+        """Forward position of a viewer who travels beside the hips at the mean speed [m]."""
         forward = self.poses["hat"][1][:, 0]
-        share = np.arange(self.frames_per_stride) / self.frames_per_stride
-        return float(np.mean(forward - self.stride_length * share))
+        step = self.stride_length / self.frames_per_stride
+        start = np.mean(forward - step * np.arange(self.frames_per_stride))
+        return start + step * np.asarray(frame)
 
     def colour(self, muscle: str) -> np.ndarray:
         """Colour of a muscle by its name (K, 3)."""
@@ -96,12 +96,13 @@ class Film:
         return np.stack(ends, axis=1)
 
 
-def animate(
-    film: Film, pieces: list[MusclePiece], strides: int, size: float
-) -> MeshcatAnimation:
+def animate(film: Film, pieces: list[MusclePiece], strides: int, size: float) -> MeshcatAnimation:
     """The film played `strides` times in a row, each time a stride further on.
 
-    `size` is the subject's height over 1.80 m. The root moves back at the mean speed of the walker, so that the view travels with it.
+    The root moves back at the mean speed of the walker, so that the view travels with it.
+
+    Args:
+        size: height of the subject over 1.80 m.
     """
     animation = MeshcatAnimation(film.frame_rate)
     animation.set_loop_mode(MeshcatAnimation.LoopMode.kLoopRepeat)
@@ -111,8 +112,8 @@ def animate(
     for frame in range(strides * film.frames_per_stride + 1):
         stride, row = divmod(frame, film.frames_per_stride)
         advance = np.array([stride * film.stride_length, 0.0, 0.0])
-        distance = film.start + film.stride_length * frame / film.frames_per_stride
-        animation.SetTransform(frame, scene.ROOT, RigidTransform([-distance, 0.0, 0.0]))
+        view = RigidTransform([-float(film.viewer(frame)), 0.0, 0.0])
+        animation.SetTransform(frame, scene.ROOT, view)
         for segment, (rotation, origin) in film.poses.items():
             pose = RigidTransform(RotationMatrix(rotation[row]), origin[row] + advance)
             animation.SetTransform(frame, scene.body_path(segment), pose)

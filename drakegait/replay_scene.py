@@ -88,7 +88,8 @@ def set_body(meshcat: Meshcat, gait: Gait) -> None:
     plant.Finalize()
     inspector = scene.model_inspector()
     for segment in SEGMENTS:
-        for number, shape in enumerate(plant.GetVisualGeometriesForBody(plant.GetBodyByName(segment))):
+        shapes = plant.GetVisualGeometriesForBody(plant.GetBodyByName(segment))
+        for number, shape in enumerate(shapes):
             path = f"{body_path(segment)}/shape_{number}"
             meshcat.SetObject(path, inspector.GetShape(shape), _skin(inspector, shape, segment))
             meshcat.SetTransform(path, inspector.GetPoseInFrame(shape))

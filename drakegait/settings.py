@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from drakegait.errors import InvalidInput, UnknownName
@@ -71,6 +71,35 @@ def parse(field: dataclasses.Field, text: str) -> Any:
         return float(text)
     except ValueError:
         raise InvalidInput(field.name, text, _allowed(meta)) from None
+
+
+def by_name(groups: Mapping[str, type[Settings]]) -> dict[str, tuple[str, dataclasses.Field]]:
+    """All fields of `groups`: name (`"group.name"` where two share one) -> group, field."""
+    owners: dict[str, list[tuple[str, dataclasses.Field]]] = {}
+    for group, settings in groups.items():
+        for field in dataclasses.fields(settings):
+            owners.setdefault(field.name, []).append((group, field))
+    return {
+        name if len(places) == 1 else f"{group}.{name}": (group, field)
+        for name, places in owners.items()
+        for group, field in places
+    }
+
+
+def find(groups: Mapping[str, type[Settings]], name: str) -> tuple[str, dataclasses.Field]:
+    """Group and field called `name`; `"group.name"` always works.
+
+    Raises:
+        UnknownName: there is none, or several share the name.
+    """
+    known = by_name(groups)
+    if name in known:
+        return known[name]
+    group, _, rest = name.partition(".")
+    for field in dataclasses.fields(groups[group]) if group in groups else ():
+        if field.name == rest:
+            return group, field
+    raise UnknownName("setting", name, sorted(known))
 
 
 def _allowed(meta: Any) -> str:

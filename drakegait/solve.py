@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from drakegait.check import check
+from drakegait.errors import InvalidInput
 from drakegait.gait import Gait
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference, guess_from_values
 from drakegait.solvers.advice import advice_for
-from drakegait.solvers.ipopt_mumps import solve_with_ipopt_mumps
 from drakegait.solvers.monitor import Monitor, Progress
 from drakegait.solvers.options import SolverOptions
 from drakegait.solvers.outcome import Outcome
@@ -53,9 +53,11 @@ def solve(
         the best gait so far.
 
     Raises:
-        InvalidInput, UnknownName: a choice that cannot be used.
+        InvalidInput, UnknownName: a choice or guess that cannot be used.
     """
     options = (options or SolverOptions()).replace(**choices)
+    if guess is not None:
+        check_guess(study, guess)
     started = time.monotonic()
     with Monitor(options.time_limit, report) as monitor:
         run = _Run(study, options, monitor)
@@ -69,6 +71,18 @@ def solve(
             run.refine(failing)
             gait = run.gait(started)
     return gait
+
+
+def check_guess(study: GaitStudy, guess: Gait) -> None:
+    """Refuse a guess of another skeleton than the study's.
+
+    Raises:
+        InvalidInput: naming what differs.
+    """
+    ours, theirs = study.skeleton_kind, guess.study.skeleton_kind
+    if theirs != ours:
+        allowed = f"{ours} or {ours}-symmetric, as the study is"
+        raise InvalidInput("model of the guess", guess.study.model, allowed)
 
 
 class _Run:
@@ -132,9 +146,9 @@ class _Run:
         started = time.monotonic()
         options = self.options
         if options.solver == "ipopt-mumps":
-            solve_program = solve_with_ipopt_mumps
+            # ipyopt has wheels for Linux on x86-64 only; Drake's solvers run everywhere.
+            from drakegait.solvers.ipopt_mumps import solve_with_ipopt_mumps as solve_program
         else:
-            # Drake's solvers load Drake's larger libraries; only those who ask pay for it.
             from drakegait.solvers.drake import solve_with_drake as solve_program
         if warm and options.barrier_start == 0.0:
             options = options.replace(barrier_start=1e-4)
@@ -164,10 +178,13 @@ class _Run:
         program, solution = self.program, self.solution
         worst = () if solution.status == "converged" else tuple(program.worst(solution.x))
         parts = program.cost_parts(solution.x)
+        message = MESSAGES[solution.status]
+        if solution.status not in ("time_limit", "interrupted"):  # then the solver knows no more
+            message += f" ({solution.detail})"
         outcome = Outcome(
             solver=self.options.solver,
             status=solution.status,
-            message=f"{MESSAGES[solution.status]} ({solution.detail})",
+            message=message,
             iterations=self.iterations,
             wall_time=self.solver_time,
             setup_time=self.setup_time,

@@ -22,7 +22,7 @@ from drakegait.errors import InvalidInput, UnknownName
 from drakegait.program.formulation import Formulation, JointLimit, Tolerances
 from drakegait.reference.deviation import DeviationSettings
 from drakegait.reference.reference import Reference
-from drakegait.settings import Settings, parse
+from drakegait.settings import Settings, find, parse
 from drakegait.transcription.schedule import Schedule
 from drakegait.transcription.splines import PeriodicQuintic
 from drakegait.walker import coordinates
@@ -168,7 +168,7 @@ class GaitStudy:
         """
         changes: dict[str, Any] = {}
         for name, value in values.items():
-            group, item = find_setting(name)
+            group, item = find(SETTINGS_GROUPS, name)
             if isinstance(value, str):
                 value = parse(item, value)
             changes.setdefault(group, {})[item.name] = value
@@ -284,33 +284,8 @@ class GaitStudy:
         return cls(**values, reference=reference)
 
 
-def settings_by_name() -> dict[str, tuple[str, dataclasses.Field]]:
-    """All constants of a study: name (`"group.name"` where two share one) -> group, field."""
-    owners: dict[str, list[tuple[str, dataclasses.Field]]] = {}
-    for group, settings in SETTINGS_GROUPS.items():
-        for item in dataclasses.fields(settings):
-            owners.setdefault(item.name, []).append((group, item))
-    found = {}
-    for name, places in owners.items():
-        for group, item in places:
-            found[name if len(places) == 1 else f"{group}.{name}"] = (group, item)
-    return found
-
-
-def find_setting(name: str) -> tuple[str, dataclasses.Field]:
-    """Group and field of a constant; `"group.name"` always works."""
-    known = settings_by_name()
-    if name in known:
-        return known[name]
-    group, _, rest = name.partition(".")
-    if group in SETTINGS_GROUPS:
-        for item in dataclasses.fields(SETTINGS_GROUPS[group]):
-            if item.name == rest:
-                return group, item
-    raise UnknownName("setting", name, sorted(known))
-
-
 def _check_number(name: str, value: Any, low: float, high: float, unit: str) -> None:
-    number = isinstance(value, (int, float, np.integer, np.floating))
-    if not number or isinstance(value, bool) or not math.isfinite(value) or not low <= value <= high:
+    kinds = (int, float, np.integer, np.floating)
+    number = isinstance(value, kinds) and not isinstance(value, bool)
+    if not number or not low <= value <= high:  # nan is in no range
         raise InvalidInput(name, value, f"a number from {low:g} to {high:g} [{unit}]")

@@ -29,9 +29,9 @@ MAY_IMPORT = {
     "study": _MODELS | {"reference", "program"},
     "solvers": _MODELS | {"reference", "program"},
 }
-# Parts that start a solve. All others (gait, check, report, replay and their helpers) read a finished
-# gait and need no solver, only the record of how the solve ended.
-SOLVING = {"__init__", "cli", "solve", "sweep"}
+# Parts that start a solve. All others (gait, check, report, replay and their helpers) read a
+# finished gait and need no solver, only the record of how the solve ended.
+SOLVING = {"__init__", "cli", "commands", "solve", "sweep"}
 SOLVER_RECORD = "drakegait.solvers.outcome"
 SOLVER_LIBRARIES = ("drakegait.solvers", "pydrake.solvers", "ipyopt")
 # The judges of a gait evaluate it on their own and do not look at the rows of the program.
@@ -80,7 +80,9 @@ def committed() -> list[Path]:
         listing = subprocess.run(command, cwd=ROOT, capture_output=True, check=True).stdout
     except (OSError, subprocess.CalledProcessError):
         pytest.skip("this is not a git checkout")
-    return [path for name in listing.decode().split("\0") if name and (path := ROOT / name).is_file()]
+    return [
+        path for name in listing.decode().split("\0") if name and (path := ROOT / name).is_file()
+    ]
 
 
 def test_imports_are_read_in_all_their_forms(tmp_path):
@@ -134,13 +136,14 @@ def test_no_committed_file_names_a_registry():
 
 @pytest.mark.parametrize("name", ["run.txt", "test.txt"])
 def test_every_pinned_package_has_hashes_and_no_address(name):
-    lines = (ROOT / "requirements" / name).read_text(encoding="utf-8").splitlines()
-    text = "\n".join(line for line in lines if not line.strip().startswith("#"))
-    entries = text.replace("\\\n", " ").splitlines()
-    assert entries
-    for entry in entries:
-        assert "==" in entry.split()[0] and "--hash=sha256:" in entry, entry
-    assert "://" not in text and "--index" not in text and "--find-links" not in text
+    text = (ROOT / "requirements" / name).read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
+    starts = [row for row, line in enumerate(lines) if not line.startswith(" ")]
+    assert starts
+    for start, end in zip(starts, [*starts[1:], len(lines)], strict=True):
+        assert "==" in lines[start]
+        assert end > start + 1, f"{lines[start]} has no hash"
+        assert all(line.startswith("    --hash=sha256:") for line in lines[start + 1 : end])
 
 
 def test_wheel_carries_models_data_and_licences_and_finds_them(tmp_path):

@@ -1,4 +1,4 @@
-"""The replay shows the gait: places, colours, arrows, prints, and one file that needs no network."""
+"""The replay shows the gait: places, colours, arrows, prints, in one file without a network."""
 
 import base64
 import dataclasses
@@ -80,6 +80,9 @@ def test_animation_moves_every_segment_and_colours_every_muscle(commands, gait, 
         colour = linear_light(film.colour(muscle)[frame])
         key = b"\x93" + b"".join(number(value) for value in colour)
         assert animation.count(key) >= 2  # once in each stride
+    # The world goes back under the walker, who thus stays in view.
+    backwards = b"\x93" + number(-float(film.viewer(frame))) + 2 * number(0.0)
+    assert animation.count(backwards) == 1
 
 
 def test_colour_follows_activation(gait, film):
@@ -103,7 +106,8 @@ def test_film_is_the_motion_in_real_time(gait, film):
     np.testing.assert_allclose(film.poses["foot_l"][0][5], rotation[0])
     np.testing.assert_allclose(film.poses["foot_l"][1][5], origin[0])
     # The viewer keeps beside the hips.
-    beside = film.start + gait.stride_length * np.arange(count) / count
+    beside = film.viewer(np.arange(count))
+    assert film.viewer(count) - film.viewer(0) == pytest.approx(gait.stride_length)
     assert np.abs(film.poses["hat"][1][:, 0] - beside).max() < 0.06
 
 

@@ -31,6 +31,7 @@ class Partials:
         q, v, a: by coordinates, velocities, accelerations.
         f: by muscle forces.
         multipliers: by contact multipliers.
+        residuals: by the residual variables.
         tau: directly by the normalised time (num, num_rows).
         stride_time: directly by T.
         events: directly by the three local events (num, num_rows, 3).
@@ -42,6 +43,7 @@ class Partials:
     a: np.ndarray | None = None
     f: np.ndarray | None = None
     multipliers: np.ndarray | None = None
+    residuals: np.ndarray | None = None
     tau: np.ndarray | None = None
     stride_time: np.ndarray | None = None
     events: np.ndarray | None = None
@@ -55,6 +57,7 @@ class Pattern:
     coordinates: np.ndarray
     forces: np.ndarray
     multipliers: np.ndarray
+    residuals: np.ndarray
     time: np.ndarray  # (num_rows, 4): T and the three local events
     placement: np.ndarray  # (num_rows, 5)
 
@@ -68,6 +71,7 @@ class Pattern:
             self.coordinates | touched,
             self.forces | touched,
             np.zeros_like(self.multipliers),
+            np.zeros_like(self.residuals),
             time,
             placement,
         )
@@ -81,6 +85,7 @@ class Pattern:
                 self.time,
                 self.placement,
                 self.multipliers,
+                self.residuals,
             ],
             axis=1,
         )
@@ -92,6 +97,7 @@ def no_dependence(num_rows: int, layout: LocalLayout) -> dict[str, np.ndarray]:
         "coordinates": np.zeros((num_rows, layout.num_coordinates), dtype=bool),
         "forces": np.zeros((num_rows, layout.num_muscles), dtype=bool),
         "multipliers": np.zeros((num_rows, feet.NUM_ROWS), dtype=bool),
+        "residuals": np.zeros((num_rows, layout.num_coordinates), dtype=bool),
         "time": np.zeros((num_rows, 4), dtype=bool),
         "placement": np.zeros((num_rows, 5), dtype=bool),
     }
@@ -166,7 +172,9 @@ def chain(
         by_force += partials.f[..., None] * basis[0][:, None, None, :]
         tau += np.einsum("prm,pm->pr", partials.f, state.forces.by_tau[0])
     if partials.multipliers is not None:
-        out[:, :, layout.multipliers :] += partials.multipliers
+        out[:, :, layout.multipliers : layout.residuals] += partials.multipliers
+    if partials.residuals is not None:
+        out[:, :, layout.residuals :] += partials.residuals
     if partials.stride_time is not None:
         time[:, :, 0] += partials.stride_time
     if partials.events is not None:

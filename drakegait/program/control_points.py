@@ -5,7 +5,7 @@ its bounded event times can reach. Its *local variables* are, in this order,
 
     coordinate coefficients (num_coordinates, width) | force coefficients
     (num_muscles, width) | stride time T | theta_before, theta_start, theta_end
-    | foot placement (5) | contact multipliers (14)
+    | foot placement (5) | contact multipliers (14) | residuals (num_coordinates,)
 
 in physical units, all of them affine functions of the design vector. Arrays
 carry the control point as their leading axis, so one code evaluates one point
@@ -51,19 +51,25 @@ class LocalLayout:
         return self.placement + 5
 
     @property
-    def size(self) -> int:
-        """Number of local variables."""
+    def residuals(self) -> int:
+        """First of the residuals of the equations of motion."""
         return self.multipliers + feet.NUM_ROWS
 
+    @property
+    def size(self) -> int:
+        """Number of local variables."""
+        return self.residuals + self.num_coordinates
+
     def split(self, z: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Coordinate coefficients, force coefficients, time, placement, multipliers."""
+        """Coordinate and force coefficients, time, placement, multipliers, residuals."""
         num = len(z)
         return (
             z[:, : self.forces].reshape(num, self.num_coordinates, self.width),
             z[:, self.forces : self.time].reshape(num, self.num_muscles, self.width),
             z[:, self.time : self.placement],
             z[:, self.placement : self.multipliers],
-            z[:, self.multipliers :],
+            z[:, self.multipliers : self.residuals],
+            z[:, self.residuals :],
         )
 
 

@@ -15,7 +15,8 @@ from drakegait.transcription.design_vector import (
 from drakegait.walker import coordinates, feet
 
 # Bounds of coordinates in anatomical sense [rad], wider than walking needs (Riener & Edrich 1999
-# and common clinical ranges of motion); translations in fractions of body height, MODEL 0.2.
+# and common clinical ranges of motion); translations in fractions of body height. See
+# docs/formulation.md 0.2.
 RANGES = {
     "hat_list": (-0.6, 0.6),
     "hat_tilt": (-0.6, 0.8),
@@ -29,8 +30,8 @@ RANGES = {
 TRANSLATIONS = {"hat_x": (-0.35, 0.35), "hat_y": (-0.1, 0.1), "hat_z": (0.35, 0.6)}
 
 STRIDE_TIMES = (0.5, 3.0)  # [s]
-PHASE_DURATIONS = (0.01, 0.40)  # [s], MODEL 6.1
-STEP_LENGTHS = (0.3, 1.0)  # [m], MODEL 6.5, like the next two
+PHASE_DURATIONS = (0.01, 0.40)  # [s], docs/formulation.md 6.1
+STEP_LENGTHS = (0.3, 1.0)  # [m], docs/formulation.md 6.5, like the next two
 TOE_ANGLES = (-0.35, 0.35)  # [rad]
 STEP_WIDTHS = (0.02, 0.25)  # [m]
 
@@ -49,6 +50,7 @@ def design_vector(formulation: Formulation, points: ControlPoints) -> DesignVect
             "timing": _timing(formulation),
             "placement": _placement(formulation),
             "multipliers": _multipliers(formulation, points),
+            "residuals": _residuals(formulation, points),
         }
     )
 
@@ -165,4 +167,20 @@ def _multipliers(formulation: Formulation, points: ControlPoints) -> Block:
             for k in range(points.num)
             for name in feet.ROW_NAMES
         ],
+    )
+
+
+def _residuals(formulation: Formulation, points: ControlPoints) -> Block:
+    names = formulation.walker.coordinate_names
+    shape = (points.num, len(names))
+    affine = Affine.free(shape)
+    if not formulation.lifted:
+        affine = Affine(np.full(shape, -1), np.ones(shape), np.zeros(shape))
+    size = np.broadcast_to(formulation.row_tolerances, shape)
+    return Block(
+        affine,
+        size,
+        -size,
+        size,
+        [f"residual {name} | control point {k}" for k in range(points.num) for name in names],
     )

@@ -5,7 +5,9 @@ In every coordinate i and at every control point
     -eps_i <= e_i <= eps_i,    e = M q'' + k - q_r - B A f^m - C^T lambda
 
 with eps the moment tolerance [N m] for rotations and the force tolerance [N]
-for translations. On an event only the forces that both neighbouring phases
+for translations. With lifted multipliers e is a variable with these bounds and
+the row is an equality; `LeastSquaresMultipliers` adds what makes lambda that of
+eq. (17). On an event only the forces that both neighbouring phases
 can bear enter (see `feet.loaded_rows_at_start`).
 """
 
@@ -33,18 +35,22 @@ class EquationsOfMotion(DenseRows):
         self.row_names = walker.coordinate_names
         self.scale = formulation.row_tolerances
         self.units = tuple("N m" if turns else "N" for turns in walker.is_rotation)
-        self.lower, self.upper = -np.ones(num), np.ones(num)
+        slack = 0.0 if formulation.lifted else 1.0
+        self.lower, self.upper = np.full(num, -slack), np.full(num, slack)
         self.applies = np.ones((points.num, num), dtype=bool)
         masks = no_dependence(num, points.layout)
         masks["coordinates"][:] = walker.coupling
         masks["forces"][:] = walker.muscles.moment_arms.T != 0.0
         masks["multipliers"][:] = _loads(walker.coordinate_names)
+        if formulation.lifted:
+            masks["residuals"][range(num), range(num)] = True
         masks["time"][:, [0, 2, 3]] = True
         masks["placement"][:, :2] = True
         self._declare(Pattern(**masks))
 
     def values(self, state: LocalState) -> np.ndarray:
-        return state.residual / self.scale
+        unexplained = state.residuals if self.formulation.lifted else 0.0
+        return (state.residual - unexplained) / self.scale
 
     def partials(self, state: LocalState) -> Partials:
         dynamics, num = state.dynamics, state.points.num
@@ -56,6 +62,11 @@ class EquationsOfMotion(DenseRows):
             f=np.broadcast_to(-arms.T, (num, *arms.T.shape)),
             multipliers=-np.swapaxes(state.contact_jacobian, 1, 2)
             * state.points.loaded[:, None, :],
+            residuals=(
+                np.broadcast_to(-np.eye(self.num_rows), (num, self.num_rows, self.num_rows))
+                if self.formulation.lifted
+                else None
+            ),
         )
 
 

@@ -1,7 +1,7 @@
 """Constraint: neural excitations between 0 and 1 (item 1 of the paper's section 3.3).
 
 For the activation dynamics a' = (u - a)(t_1 u + t_2) the bounds 0 <= u <= 1
-are equivalent to (MODEL 2.8)
+are equivalent to (docs/formulation.md 2.8)
 
     a' + a/t_d >= 0    and    a' - (1 - a)/t_a <= 0,
 

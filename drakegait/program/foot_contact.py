@@ -1,6 +1,6 @@
 """Constraints: the feet stay on their footprints and do not enter the ground.
 
-Contact (item 9 of the paper's section 3.3, MODEL 6.5): where heel or toe is on the
+Contact (item 9 of the paper's section 3.3, docs/formulation.md 6.5): where heel or toe is on the
 ground its position, and the heading of its foot, equal those of the footprint
 within eps_k = 2 mm and 0.01 rad. Clearance (item 2): elsewhere z >= 0.
 """

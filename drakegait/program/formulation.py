@@ -20,8 +20,7 @@ from drakegait.transcription.splines import PeriodicQuintic
 from drakegait.walker.feet import ContactSettings
 from drakegait.walker.walker import Walker
 
-GRAVITY = 9.81  # [m/s^2], MODEL 0.1
-LIFTED_SHARE = 0.8  # of the tolerances, see `Formulation.row_tolerances`
+GRAVITY = 9.81  # [m/s^2], docs/formulation.md 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,13 +110,8 @@ class Formulation:
 
     @cached_property
     def row_tolerances(self) -> np.ndarray:
-        """Tolerance that the rows of the equations of motion hold (num_coordinates,) [N, N m].
-
-        Lifted rows promise |e| <= eps for *some* multipliers; the least-squares ones of eq. (17),
-        by which a gait is judged, leave up to about twice as much in a single row. Holding
-        `LIFTED_SHARE` of eps keeps the judged residual within bounds between the points, too.
-        """
-        return (LIFTED_SHARE if self.lifted else 1.0) * np.where(
+        """Tolerance of each equation of motion (num_coordinates,) [N, N m]."""
+        return np.where(
             self.walker.is_rotation,
             self.tolerances.moment_tolerance,
             self.tolerances.force_tolerance,

@@ -20,11 +20,12 @@ from drakegait.program.foot_contact import Clearance, FootContact
 from drakegait.program.formulation import Formulation
 from drakegait.program.ground_forces import FreeMoment, Friction, NormalForce
 from drakegait.program.joint_limits import JointLimits
+from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
 from drakegait.program.local_costs import Deviation, LocalCost, MetabolicCost
 from drakegait.program.local_rows import LocalRows
 from drakegait.program.local_state import LocalState
 from drakegait.program.timing import TimingRows
-from drakegait.transcription.design_vector import Affine, DesignValues
+from drakegait.transcription.design_vector import Affine, DesignValues, DesignVector
 from drakegait.walker import feet
 
 
@@ -51,7 +52,7 @@ class GaitProgram:
         design: the unknowns.
         constraints, costs: what holds and what is minimised at each control point.
         timing: the few rows that belong to no control point.
-        smoothing: width of the rounded corners of the energy model, 1 = MODEL 1.6.
+        smoothing: width of the rounded corners of the energy model, 1 = docs/formulation.md 1.6.
     """
 
     def __init__(self, formulation: Formulation):
@@ -62,6 +63,8 @@ class GaitProgram:
         kinds: list[type[LocalRows]] = [
             EquationsOfMotion, FootContact, Clearance, Friction, Excitation,
         ]  # fmt: skip
+        if formulation.lifted:
+            kinds.insert(1, LeastSquaresMultipliers)
         if not formulation.planar:
             kinds.append(FreeMoment)
         if not formulation.lifted:
@@ -127,7 +130,7 @@ class GaitProgram:
         window = (points.first[:, None] + np.arange(width)) % intervals
         events = self._local_events()
         parts = []
-        for name in ("coordinates", "forces", "timing", "placement", "multipliers"):
+        for name in DesignVector.ORDER:
             full = self.design.selection(name)
             if name in ("coordinates", "forces"):
                 take = lambda a: a[:, window].transpose(1, 0, 2).reshape(num, -1)  # noqa: E731
@@ -264,7 +267,8 @@ class GaitProgram:
         values = self.design.unpack(x)
         if self.formulation.lifted:
             return values
-        return replace(values, multipliers=self.state(x).multipliers)
+        state = self.state(x)
+        return replace(values, multipliers=state.multipliers, residuals=state.residual)
 
     def violations(self, x: np.ndarray) -> np.ndarray:
         """How far each row is outside its bounds, in units of its scale (num_constraints,)."""

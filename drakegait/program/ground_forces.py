@@ -1,6 +1,6 @@
 """Constraints: the ground only pushes, and grips no better than Coulomb allows.
 
-Items 3 and 4 of the paper's section 3.3, MODEL 6.8 and 6.9. For each loaded foot, with
+Items 3 and 4 of the paper's section 3.3; docs/formulation.md 6.8, 6.9. For each loaded foot, with
 N = N_A + N_B the vertical force and F the horizontal force of the whole foot,
 
     friction:     mu^2 N^2 - F_x^2 - F_y^2 - 1e-6 W^2 >= 0    (with N >= 0; W body weight)
@@ -24,7 +24,7 @@ from drakegait.program.local_rows import DenseRows
 from drakegait.program.local_state import LocalState
 from drakegait.walker import feet
 
-_REGULARISATION = 1e-6  # of squared body weight, MODEL 6.9
+_REGULARISATION = 1e-6  # of squared body weight, docs/formulation.md 6.9
 
 
 def _foot_rows(foot: int, *rows: int) -> list[int]:
@@ -70,7 +70,7 @@ class FreeMoment(DenseRows):
     """Grip left for twisting, both ways, per foot [10 N m]."""
 
     kind = "free moment"
-    row_names = ("foot_r inward", "foot_r outward", "foot_l inward", "foot_l outward")
+    row_names = ("foot_r turned left", "foot_r turned right", "foot_l turned left", "foot_l turned right")
     units = ("N m",) * 4
 
     def __init__(self, formulation: Formulation, points: ControlPoints):

@@ -9,6 +9,8 @@ the reference's ground reactions, within their bounds.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import scipy.sparse
 from pydrake.solvers import ClarabelSolver, MathematicalProgram
@@ -34,10 +36,11 @@ def guess_from_values(program: GaitProgram, values: DesignValues) -> np.ndarray:
     if values.multipliers.shape == (program.points.num, feet.NUM_ROWS):
         return np.clip(design.pack(values), design.lower, design.upper)
     blank = np.zeros((program.points.num, feet.NUM_ROWS))
+    no_residuals = np.zeros((program.points.num, program.points.layout.num_coordinates))
     x = design.pack(
         DesignValues(
             values.coordinate_coefficients, values.force_coefficients, values.stride_time,
-            values.events, values.placement, blank,
+            values.events, values.placement, blank, no_residuals,
         )
     )  # fmt: skip
     return _fit_forces(program, np.clip(x, design.lower, design.upper), keep_muscles=True)
@@ -69,6 +72,7 @@ def _reference_values(program: GaitProgram) -> DesignValues:
             placement.toe_angle_right, placement.toe_angle_left, placement.step_width,
         ]),
         multipliers,
+        np.zeros((program.points.num, program.points.layout.num_coordinates)),
     )  # fmt: skip
 
 
@@ -88,17 +92,17 @@ def _reference_multipliers(program: GaitProgram, reactions: np.ndarray) -> np.nd
 def _fit_forces(program: GaitProgram, x: np.ndarray, keep_muscles: bool = False) -> np.ndarray:
     """Improve muscle and contact forces in `x` by one quadratic program."""
     design = program.design
-    first = design.offsets["multipliers"] if keep_muscles else design.offsets["forces"]
     forces = np.zeros(design.num_variables, dtype=bool)
     forces[design.offsets["forces"] : design.offsets["timing"]] = not keep_muscles
-    forces[design.offsets["multipliers"] :] = True
-    del first
+    forces[design.offsets["multipliers"] : design.offsets["residuals"]] = True
     rows = _motion_rows(program)
     entries = program.jacobian(x)
     matrix = scipy.sparse.csr_array(
         (entries, (program.jacobian_rows, program.jacobian_columns)),
         shape=(program.num_constraints, program.num_variables),
     )[:rows][:, np.flatnonzero(forces)]
+    x = x.copy()
+    x[design.offsets["residuals"] :] = 0.0
     offset = program.rows(x)[:rows] - matrix @ x[forces]
     is_muscle = np.flatnonzero(forces) < design.offsets["timing"]
     weight = np.where(is_muscle, _EFFORT, _PRIOR)
@@ -113,7 +117,17 @@ def _fit_forces(program: GaitProgram, x: np.ndarray, keep_muscles: bool = False)
     if result.is_success():
         x = x.copy()
         x[forces] = np.clip(result.GetSolution(y), design.lower[forces], design.upper[forces])
-    return x
+    return _with_residuals(program, x)
+
+
+def _with_residuals(program: GaitProgram, x: np.ndarray) -> np.ndarray:
+    """Set the residual variables, if any, to the residuals of `x` within their bounds."""
+    design, start = program.design, program.design.offsets["residuals"]
+    if start == design.num_variables:
+        return x
+    full = program.design.unpack(x)
+    x = design.pack(replace(full, residuals=program.state(x).residual))
+    return np.clip(x, design.lower, design.upper)
 
 
 def _motion_rows(program: GaitProgram) -> int:

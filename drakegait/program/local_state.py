@@ -70,7 +70,8 @@ class LocalState:
         self.smoothing = smoothing
         self.results: dict[tuple[str, str], np.ndarray] = {}  # rows made from this state
         split = points.layout.split(z)
-        self._coordinates, self._forces, self.time, self.placement, self._multipliers = split
+        self._coordinates, self._forces, self.time, self.placement, self._multipliers = split[:5]
+        self.residuals = split[5]
         self.stride_time = self.time[:, :1]
         self.stride_length = self.placement[:, 0] + self.placement[:, 1]
         start, end = self.time[:, 2], self.time[:, 3]
@@ -121,11 +122,15 @@ class LocalState:
         v[:, 0] += self.stride_length / self.stride_time[:, 0]
         return v
 
+    def motion_tau_tau(self) -> np.ndarray:
+        """Second derivative by tau of the coordinates without their steady advance."""
+        return np.einsum("pcw,pw->pc", self._coordinates, self.basis[2])
+
     # Contact -----------------------------------------------------------------------------
 
     @cached_property
     def contact_jacobian(self) -> np.ndarray:
-        """C of all contact rows (num, 14, num_coordinates), the force side (MODEL 6.6)."""
+        """C of all contact rows (num, 14, num_coordinates); see docs/formulation.md 6.6."""
         return self.formulation.walker.skeleton.contact_jacobian(self.q)
 
     @cached_property

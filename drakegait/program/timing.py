@@ -40,6 +40,12 @@ class TimingRows:
         self.rows = unique // (design.num_variables + 1)
         self.columns = unique % (design.num_variables + 1)
         self._keep = keep
+        timing = self._timing
+        free = [(phase, k) for phase in self._phases for k in (1, 2) if timing.index[phase + k] >= 0]
+        self._curved = np.array(free, dtype=int).reshape(-1, 2)
+        events = timing.index[self._curved.sum(axis=1)]
+        self.curved_rows = np.maximum(events, timing.index[0])
+        self.curved_columns = np.minimum(events, timing.index[0])
 
     def _entries(self) -> tuple[np.ndarray, np.ndarray]:
         timing, placement = self._timing.index, self._placement.index
@@ -68,3 +74,14 @@ class TimingRows:
             ]
         scaled = np.array(entries) / np.repeat(self.scale, 3)
         return np.bincount(self._entry, scaled[self._keep], len(self.rows))
+
+    def curvature(self, multipliers: np.ndarray) -> np.ndarray:
+        """Second derivatives of the weighted rows at `curved_rows`, `curved_columns`.
+
+        T multiplies the events: d2(row)/dT dtheta = +-1.
+        """
+        phase, end = self._curved[:, 0], self._curved[:, 1]
+        sign = np.where(end == 2, 1.0, -1.0)
+        factor = self._timing.factor
+        product = factor[0] * factor[phase + end]
+        return sign * product * multipliers[phase + 1] / self.scale[phase + 1]

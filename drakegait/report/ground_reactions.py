@@ -19,6 +19,7 @@ _AXES = {
     "fore-aft": "Fore-aft force [% body weight]   + propels / − brakes",
     "medial": "Side force [% body weight]   + medial / − lateral",
 }
+_VECTOR_PANEL = (3.1, 2.0)  # width and height of a panel [inch]
 _VECTOR_STEP = 1.5  # % of the cycle between two force vectors
 _LEAST_LOAD = 5.0  # % of body weight that a force vector must have to be drawn
 VECTOR_SCALE = 0.004
@@ -35,7 +36,7 @@ def ground_reactions(all_curves: Sequence[GaitCurves]) -> Figure:
     spatial = first.coordinate("hat_y") is not None
     shown = list(_AXES) if spatial else ["vertical", "fore-aft"]
     figure, grid = style.panel_figure(
-        2, len(shown), "Ground reactions", style.subtitle_of(first), panel=(3.1, 2.0)
+        2, len(shown), "Ground reactions", style.subtitle_of(first), panel=_VECTOR_PANEL
     )
     has_reference = first.ground_reaction("right", "vertical", reference=True) is not None
     style.legend(figure, all_curves, "reference" if has_reference else None)
@@ -59,9 +60,7 @@ def _draw_force(axes: Axes, all_curves: Sequence[GaitCurves], axis: str) -> None
             style.draw_reference(axes, *first.own_cycle(side, reference))
         for number, curves in enumerate(all_curves):
             force = curves.ground_reaction(side, axis)
-            style.draw_gait(
-                axes, number, style.SIDE_COLOURS[side], *curves.own_cycle(side, force)
-            )
+            style.draw_gait(axes, number, style.SIDE_COLOURS[side], *curves.own_cycle(side, force))
     if axis == "vertical":
         axes.axhline(100.0, color="#8a8a8a", lw=0.5, ls=":", zorder=0)
         axes.set_ylim(bottom=min(-5.0, axes.get_ylim()[0]))
@@ -102,9 +101,12 @@ def _draw_vectors(axes: Axes, curves: GaitCurves, side: str) -> None:
     axes.plot([0.0, length], [0.0, 0.0], color=style.BODY_COLOUR, lw=3.0, solid_capstyle="butt")
     axes.set_title(f"Force vectors, {side} foot")
     axes.set_aspect("equal")
-    axes.set_xlim(-0.25 - 0.1, length + 0.25 + 0.1)
-    axes.set_ylim(-0.02, 0.55)
-    axes.set_yticks([0.0, 0.2, 0.4], ["0", "50", "100"])
+    highest = max(curves.ground_reaction(side, "vertical").max() for side in SIDES)
+    low, high = -0.02, VECTOR_SCALE * max(120.0, 1.08 * highest)
+    half = 0.5 * (high - low) * _VECTOR_PANEL[0] / _VECTOR_PANEL[1]
+    axes.set_xlim(0.5 * length - half, 0.5 * length + half)
+    axes.set_ylim(low, high)
+    axes.set_yticks([VECTOR_SCALE * load for load in (0, 50, 100)], ["0", "50", "100"])
     axes.set_ylabel("% of body weight", fontsize=7.5, labelpad=1)
     axes.set_xlabel("along the foot, from the heel [m]", fontsize=7.5, labelpad=2)
 

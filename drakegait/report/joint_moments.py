@@ -78,9 +78,7 @@ def _draw(axes: Axes, all_curves: Sequence[GaitCurves], side: str, values) -> No
     for number, curves in enumerate(all_curves):
         found = values(curves, side)
         if found is not None:
-            style.draw_gait(
-                axes, number, style.SIDE_COLOURS[side], *curves.own_cycle(side, found)
-            )
+            style.draw_gait(axes, number, style.SIDE_COLOURS[side], *curves.own_cycle(side, found))
 
 
 def _draw_metabolic(axes: Axes, all_curves: Sequence[GaitCurves]) -> None:

@@ -141,7 +141,9 @@ def _draw_from_behind(axes: Axes, curves: GaitCurves) -> None:
     for number, side in enumerate(SIDES):
         shift = (number - 0.5) * 0.75 * size
         _draw_walker(axes, sticks, number, shift, across=True)
-        axes.text(shift, -0.05 * size, f"{side} single support", fontsize=7.5, ha="center", va="top")
+        axes.text(
+            shift, -0.05 * size, f"{side} single support", fontsize=7.5, ha="center", va="top"
+        )
     axes.axhline(0.0, color="#8a8a8a", lw=0.8, zorder=0)
     axes.set_title("From behind", fontsize=8.5)
     _bare(axes, (-0.62 * size, 0.62 * size), (-0.02 * size, 1.80 * size))

@@ -79,9 +79,7 @@ def panel_figure(
         },
     )  # fmt: skip
     figure.text(left / width, 1 - 0.16 / height, title, fontsize=12, weight="bold", va="top")
-    figure.text(
-        left / width, 1 - 0.40 / height, subtitle, fontsize=8, color="#555555", va="top"
-    )
+    figure.text(left / width, 1 - 0.40 / height, subtitle, fontsize=8, color="#555555", va="top")
     return figure, axes
 
 
@@ -180,7 +178,7 @@ def legend(
     )  # fmt: skip
     if toe_off:
         figure.text(
-            1 - 0.15 / width, 1 - 0.42 / height,
+            1 - 0.15 / width, 1 - 0.62 / height,
             "shaded: contact phases 1 to 8 of the right leg; each leg from its own heel strike",
             fontsize=7, color="#7a8796", ha="right", va="top",
         )  # fmt: skip

@@ -8,7 +8,8 @@ The design vector chi of eq. (4) holds, in this order,
    a one-to-one image of the phase durations t_ph = T (theta_(p+1) - theta_p)
    with which a bound on an event bounds the reach of its control points,
 4. the foot placement p_g [m, rad],
-5. with lifted multipliers, the contact forces at every control point [N, N m].
+5. with lifted multipliers, the contact forces and the residuals of the equations
+   of motion at every control point [N, N m].
 
 The solver sees each divided by a typical size. A symmetric walker has half
 of them *by construction*: the coefficients of a mirrored function are read,
@@ -33,6 +34,8 @@ class DesignValues:
         events: start of each of the eight phases as fraction of the cycle, (8,).
         placement: p_g of eq. (5), (5,) [m, m, rad, rad, m].
         multipliers: contact rows at the control points, (num_points, 14) [N, N m].
+        residuals: of the equations of motion at the control points, e of eq. (18),
+            (num_points, num_coordinates) [N, N m].
     """
 
     coordinate_coefficients: np.ndarray
@@ -41,6 +44,7 @@ class DesignValues:
     events: np.ndarray
     placement: np.ndarray
     multipliers: np.ndarray
+    residuals: np.ndarray
 
     @property
     def phase_durations(self) -> np.ndarray:
@@ -111,10 +115,10 @@ class DesignVector:
 
     Args:
         blocks: coordinates (n_c, M), forces (N_m, M), timing [T, theta_1..theta_P+1],
-            placement (5,), multipliers (num_points, 14), in this order.
+            placement (5,), multipliers (num_points, 14), residuals (num_points, n_c), in this order.
     """
 
-    ORDER = ("coordinates", "forces", "timing", "placement", "multipliers")
+    ORDER = ("coordinates", "forces", "timing", "placement", "multipliers", "residuals")
 
     def __init__(self, blocks: dict[str, Block]):
         self.blocks = blocks
@@ -167,6 +171,7 @@ class DesignVector:
             events=events,
             placement=full["placement"],
             multipliers=full["multipliers"],
+            residuals=full["residuals"],
         )
 
     def _full(self, values: DesignValues) -> dict[str, np.ndarray]:
@@ -180,6 +185,7 @@ class DesignVector:
             ),
             "placement": values.placement,
             "multipliers": values.multipliers,
+            "residuals": values.residuals,
         }
 
     def selection(self, name: str) -> Affine:

@@ -55,7 +55,7 @@ EVENT_NAMES = (
 NUM_PHASES = 8
 
 _HEEL, _TOE, _FLAT = (0, 1, 2, 6), (3, 4, 5, 6), (0, 1, 2, 5, 6)
-_CONTACTS = (  # (right foot, left foot) in each phase, MODEL 6.1 / paper section 2
+_CONTACTS = (  # (right foot, left foot) in each phase, docs/formulation.md 6.1
     (_HEEL, _TOE),
     (_FLAT, _TOE),
     (_FLAT, ()),
@@ -135,7 +135,7 @@ class FootGeometry:
 def footprints(
     placement: np.ndarray, print_of_left: np.ndarray, geometry: FootGeometry
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Prescribed values of the contact rows, MODEL 6.5.
+    """Prescribed values of the contact rows, docs/formulation.md 6.5.
 
     Args:
         placement: step length right and left, toe angle right and left, step

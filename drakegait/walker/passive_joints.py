@@ -139,6 +139,13 @@ class PassiveJoints:
         _, slope = self._exponentials(q)
         return (self._signs.T * slope[..., None, :]) @ self._slopes, -np.diag(self._damping)
 
+    def curvature(self, q: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        """Second derivatives (..., n, n) by q of the weighted sum of forces, weights (..., n)."""
+        exponents = np.asarray(q) @ self._slopes.T + self._offsets
+        bent = np.where(exponents < MAX_EXPONENT, np.exp(np.minimum(exponents, MAX_EXPONENT)), 0.0)
+        factor = bent * (weights @ self._signs.T)
+        return self._slopes.T @ (factor[..., None] * self._slopes)
+
     def _exponentials(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Terms (..., terms) and their derivatives by the exponent; linear above MAX_EXPONENT."""
         exponents = np.asarray(q) @ self._slopes.T + self._offsets

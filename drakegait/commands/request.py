@@ -1,0 +1,151 @@
+"""The options of `drakegait walk`, and what they ask for."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from drakegait.commands.constants import read_constants
+from drakegait.commands.gait_files import load_gait
+from drakegait.errors import InvalidInput, UnknownName
+from drakegait.gait import Gait
+from drakegait.program.formulation import JointLimit
+from drakegait.reference.embedded import GAITS
+from drakegait.reference.reference import Reference
+from drakegait.solve import check_guess
+from drakegait.solvers.options import SolverOptions
+from drakegait.study import MODELS, SETTINGS_GROUPS, GaitStudy
+from drakegait.walker import coordinates
+from drakegait.walker.subject import AddedMass, Subject
+
+_ADDED = "SEGMENT=KG or SEGMENT=KG@X,Y,Z with numbers [kg, m], for example foot_r=2.0"
+_STRENGTH = "MUSCLE=FACTOR with a number, for example soleus_l=0.5"
+_LIMIT = "COORDINATE=LOW:HIGH with numbers [degrees or m], for example knee_flexion_r=0:60"
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class WalkRequest:
+    """What was typed; the fields are the options of `walk`."""
+
+    model: str
+    nodes: int | None
+    speed: float
+    weights: tuple[str, str]
+    reference: str | None
+    limit: Sequence[str] | None
+    height: float
+    mass: float
+    added_mass: Sequence[str] | None
+    strength: Sequence[str] | None
+    planar_muscles: str
+    set_: Sequence[str] | None
+    solver: str | None
+    multipliers: str
+    guess: str | None
+    time_limit: float
+    refine: bool
+    out: str
+    no_pictures: bool
+
+    def prepare(self) -> tuple[GaitStudy, SolverOptions, Gait | None]:
+        """Study, way to solve it and guess, all validated and the walker built.
+
+        Raises:
+            InvalidInput, UnknownName, BadFile: the first thing that cannot be used.
+        """
+        if self.model not in MODELS:
+            raise UnknownName("model", self.model, MODELS)
+        constants = read_constants(self.set_ or ())
+        options = SolverOptions(time_limit=self.time_limit, **constants.pop("solver", {}))
+        if self.solver is not None:
+            options = options.replace(solver=self.solver)
+        subject = Subject(height=self.height, mass=self.mass, **constants.pop("subject", {}))
+        energy_weight, deviation_weight = (
+            _number("--weights", " ".join(self.weights), text, "two numbers, ENERGY DEVIATION")
+            for text in self.weights
+        )
+        study = GaitStudy(
+            model=self.model,
+            nodes=_default_nodes(self.model) if self.nodes is None else self.nodes,
+            speed=self.speed,
+            subject=subject,
+            added_masses=tuple(_added_mass(text) for text in self.added_mass or ()),
+            energy_weight=energy_weight,
+            deviation_weight=deviation_weight,
+            strength=dict(_strength(text) for text in self.strength or ()),
+            planar_muscles=self.planar_muscles,
+            multipliers=self.multipliers,
+            limits=tuple(_limit(text, self.model) for text in self.limit or ()),
+            **{group: SETTINGS_GROUPS[group](**values) for group, values in constants.items()},
+        )
+        if self.reference is not None:
+            study = study.replace(reference=_reference(self.reference, study))
+        guess = None if self.guess is None else load_gait(self.guess)
+        if guess is not None:
+            check_guess(study, guess)
+        study.formulation()  # builds the walker: strengths and weights are judged there
+        return study, options, guess
+
+
+def _default_nodes(model: str) -> int:
+    return getattr(GaitStudy, model.replace("-", "_"))().nodes
+
+
+def _pair(option: str, text: str, allowed: str) -> tuple[str, str]:
+    name, equals, value = (part.strip() for part in text.partition("="))
+    if not equals or not name or not value:
+        raise InvalidInput(option, text, allowed)
+    return name, value
+
+
+def _number(option: str, whole: str, text: str, allowed: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InvalidInput(option, whole, allowed) from None
+
+
+def _added_mass(text: str) -> AddedMass:
+    option = "--added-mass"
+    segment, value = _pair(option, text, _ADDED)
+    mass, at, place = value.partition("@")
+    point = tuple(_number(option, text, word, _ADDED) for word in place.split(",")) if at else None
+    return AddedMass(segment, _number(option, text, mass, _ADDED), point)
+
+
+def _strength(text: str) -> tuple[str, float]:
+    name, value = _pair("--strength", text, _STRENGTH)
+    return name, _number("--strength", text, value, _STRENGTH)
+
+
+def _limit(text: str, model: str) -> JointLimit:
+    option, kind = "--limit", model.removesuffix("-symmetric")
+    name, value = _pair(option, text, _LIMIT)
+    angles = dict(zip(coordinates.names(kind), coordinates.rotations(kind), strict=True))
+    if name not in angles or name == "hat_x":
+        known = [known for known in angles if known != "hat_x"]
+        raise UnknownName("coordinate of a limit", name, known)
+    low, colon, high = value.partition(":")
+    if not colon or not (low.strip() or high.strip()):
+        raise InvalidInput(option, text, _LIMIT)
+    unit = math.pi / 180.0 if angles[name] else 1.0
+    ends = [
+        unit * _number(option, text, end, _LIMIT) if end.strip() else missing
+        for end, missing in ((low, -math.inf), (high, math.inf))
+    ]
+    if not ends[0] < ends[1]:
+        raise InvalidInput(option, text, "a range whose low end is below its high end")
+    return JointLimit(name, *ends)
+
+
+def _reference(given: str, study: GaitStudy) -> Reference:
+    kind, subject, deviation = study.skeleton_kind, study.subject, study.deviation
+    if given in GAITS or not (Path(given).suffix or Path(given).exists()):
+        try:
+            return Reference.embedded(kind, subject, given, deviation)
+        except UnknownName as error:
+            known = (*error.known, "or the path of a CSV file")
+            raise UnknownName("--reference", given, known) from None
+    return Reference.from_table(given, kind=kind, subject=subject, deviation=deviation)

@@ -1,0 +1,100 @@
+"""What the commands print: a live line while solving, tables, the end in plain words."""
+
+from __future__ import annotations
+
+import logging
+import time
+from types import TracebackType
+
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from drakegait.check import CheckReport
+from drakegait.solvers.monitor import Progress
+
+PLAIN_WIDTH = 150  # columns where the output is no terminal
+PLAIN_INTERVAL = 5.0  # [s] between lines where the output is no terminal
+
+
+def console() -> Console:
+    """Standard output; wide where it is a file or a pipe."""
+    screen = Console(highlight=False)
+    if not screen.is_terminal:
+        screen.width = PLAIN_WIDTH
+    return screen
+
+
+def quiet_drake() -> None:
+    """Keep Drake's own notes ("Meshcat listening ...") off the screen, but not its warnings."""
+    logging.getLogger("drake").setLevel(logging.WARNING)
+
+
+def progress_line(progress: Progress) -> str:
+    """One iterate in one line; the name of the worst row is last, where it may be cut off."""
+    worst = "every law holds"
+    if progress.worst:
+        law = progress.worst.replace(" | ", ", ")
+        worst = f"{progress.violation:.2g} x tolerance: {law}"
+    around = "" if progress.round == 1 else f"round {progress.round}  "
+    return (
+        f"{around}iteration {progress.iteration:<3d}  cost {progress.cost:<7.5g}  "
+        f"{clock(progress.remaining)} left  {worst}"
+    )
+
+
+def clock(seconds: float) -> str:
+    """Minutes and seconds, with hours if there are any."""
+    whole = max(0, round(seconds))
+    minutes, rest = divmod(whole, 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
+
+
+class ProgressDisplay:
+    """Follows a solve: one live line on a terminal, else a line every few seconds.
+
+    Use as a context manager and hand `report` to `solve`.
+    """
+
+    def __init__(self, screen: Console):
+        self._screen = screen
+        self._live: Live | None = None
+        self._last = -PLAIN_INTERVAL
+
+    def __enter__(self) -> ProgressDisplay:
+        if self._screen.is_terminal:
+            # No refreshing thread: it would wait for the solver anyway.
+            self._live = Live(
+                self._text("preparing ..."), console=self._screen, auto_refresh=False,
+                transient=True,
+            )  # fmt: skip
+            self._live.start(refresh=True)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._live is not None:
+            self._live.stop()
+
+    def report(self, progress: Progress) -> None:
+        """Show an iterate."""
+        line = progress_line(progress)
+        if self._live is not None:
+            self._live.update(self._text(line), refresh=True)
+        elif time.monotonic() - self._last >= PLAIN_INTERVAL:
+            self._last = time.monotonic()
+            print(line, flush=True)
+
+    @staticmethod
+    def _text(line: str) -> Text:
+        return Text(line, no_wrap=True, overflow="ellipsis")
+
+
+def print_report(screen: Console, report: CheckReport) -> None:
+    """The table of a check."""
+    screen.print(report.table())
