@@ -132,6 +132,10 @@ def walk(
     planar_muscles: Annotated[str, _option(
         "--planar-muscles", panel=_PERSON, metavar="SET",
         help="Muscle set of the planar models: table3 or gait2d.")] = "table3",
+    sdf: Annotated[str | None, _option(
+        "--sdf", panel=_PERSON, metavar="FILE",
+        help="SDF model of your own, written for 1.80 m and 75 kg, with the joints, links and "
+        "frames of sdf/README.md.")] = None,
     set_: Annotated[list[str] | None, _option(
         "--set", panel=_PERSON, metavar="NAME=VALUE",
         help="Change a tolerance, physiological constant or solver option; all are listed below. "

@@ -62,6 +62,7 @@ class GaitStudy:
         energy_weight, deviation_weight: w_E and w_J of eq. (13).
         strength: factor on the largest force of muscles, by name (`"soleus_l"`) or group.
         planar_muscles: muscle set of the planar models, `"table3"` or `"gait2d"`.
+        sdf: text of an SDF model of your own (for 1.80 m, 75 kg); default the shipped one.
         reference: the walk to stay close to; default the embedded stride of the model.
         multipliers: `"lifted"` (contact forces as variables) or `"projected"` (eq. 17).
         interior_points: control points inside each of the 8 (symmetric: 4) phases; default
@@ -82,6 +83,7 @@ class GaitStudy:
     deviation_weight: float = 1.0
     strength: Mapping[str, float] = field(default_factory=dict)
     planar_muscles: str = "table3"
+    sdf: str | None = None
     reference: Reference | None = field(default=None, compare=False)
     multipliers: str = "lifted"
     interior_points: tuple[int, ...] | None = None
@@ -200,6 +202,7 @@ class GaitStudy:
             self.passive,
             self.strength,
             self.planar_muscles,
+            self.sdf,
         )
 
     @cached_property

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from drakegait.commands.constants import read_constants
 from drakegait.commands.gait_files import load_gait
-from drakegait.errors import InvalidInput, UnknownName
+from drakegait.errors import BadFile, InvalidInput, UnknownName
 from drakegait.gait import Gait
 from drakegait.program.formulation import JointLimit
 from drakegait.reference.embedded import GAITS
@@ -40,6 +40,7 @@ class WalkRequest:
     added_mass: Sequence[str] | None
     strength: Sequence[str] | None
     planar_muscles: str
+    sdf: str | None
     set_: Sequence[str] | None
     solver: str | None
     multipliers: str
@@ -76,6 +77,7 @@ class WalkRequest:
             deviation_weight=deviation_weight,
             strength=dict(_strength(text) for text in self.strength or ()),
             planar_muscles=self.planar_muscles,
+            sdf=None if self.sdf is None else _text(self.sdf),
             multipliers=self.multipliers,
             limits=tuple(_limit(text, self.model) for text in self.limit or ()),
             **{group: SETTINGS_GROUPS[group](**values) for group, values in constants.items()},
@@ -87,6 +89,14 @@ class WalkRequest:
             check_guess(study, guess)
         study.formulation()  # builds the walker: strengths and weights are judged there
         return study, options, guess
+
+
+def _text(path: str) -> str:
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "not text"
+        raise BadFile(path, f"cannot be read ({reason}).") from None
 
 
 def _default_nodes(model: str) -> int:

@@ -15,6 +15,7 @@ own point.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,8 +48,14 @@ class DrakeProgram:
     costs: tuple[Binding[Cost], ...]
 
 
-def mathematical_program(gait_program: GaitProgram) -> DrakeProgram:
-    """Write `gait_program` as a `MathematicalProgram` over named, scaled variables."""
+def mathematical_program(
+    gait_program: GaitProgram, guard: Callable[[], None] | None = None
+) -> DrakeProgram:
+    """Write `gait_program` as a `MathematicalProgram` over named, scaled variables.
+
+    Args:
+        guard: called at every evaluation of a cost; may raise to end a solve.
+    """
     program = MathematicalProgram()
     variables = np.array([Variable(name) for name in gait_program.design.names])
     program.AddDecisionVariables(variables)
@@ -57,7 +64,7 @@ def mathematical_program(gait_program: GaitProgram) -> DrakeProgram:
     )
     bounds.evaluator().set_description("bounds of the design variables")
     costs = tuple(
-        _add_cost(program, _CostEvaluator(gait_program, cost), variables)
+        _add_cost(program, _CostEvaluator(gait_program, cost, guard), variables)
         for cost in gait_program.costs
     )
     points = [_PointEvaluator(gait_program, k) for k in range(gait_program.points.num)]
@@ -212,12 +219,16 @@ class _TimingEvaluator:
 class _CostEvaluator:
     """One kind of cost as a function of the whole design vector."""
 
-    def __init__(self, program: GaitProgram, cost: LocalCost):
-        self._program, self._cost = program, cost
+    def __init__(
+        self, program: GaitProgram, cost: LocalCost, guard: Callable[[], None] | None = None
+    ):
+        self._program, self._cost, self._guard = program, cost, guard
         self.name = cost.kind
         self.index = np.arange(program.num_variables)
 
     def __call__(self, x: np.ndarray) -> np.ndarray | float:
+        if self._guard is not None:
+            self._guard()
         if x.dtype != object:
             return float(self._cost.values(self._program.state(x)).sum())
         value = ExtractValue(x)[:, 0]

@@ -46,12 +46,16 @@ def solve_with_drake(
     warm: Solution | None = None,
 ) -> Solution:
     """Minimise with Drake's `IpoptSolver` or `SnoptSolver` from `x`; see `Solution`."""
-    drake = mathematical_program(program)
+
+    def guard() -> None:
+        if monitor.stop_reason is not None:
+            raise StopSolve(monitor.stop_reason)
 
     def watch(at: np.ndarray) -> None:
-        reason = monitor.step(at)
-        if reason is not None:
-            raise StopSolve(reason)
+        monitor.step(at)
+        guard()
+
+    drake = mathematical_program(program, guard)
 
     drake.program.AddVisualizationCallback(watch, drake.variables)
     with tempfile.TemporaryDirectory() as folder:
@@ -68,7 +72,8 @@ def solve_with_drake(
         try:
             result = solver.Solve(drake.program, x, drake_options)
         except (StopSolve, RuntimeError) as error:
-            return _stopped(x, monitor, str(error))
+            # Drake hands on the text of an exception with its traceback: the last line says it.
+            return _stopped(x, monitor, str(error).strip().splitlines()[-1])
         text = log.read_text(errors="replace") if log.exists() else ""
     if options.solver == "ipopt":
         return _read_ipopt(drake, result, monitor, text, x)

@@ -49,14 +49,15 @@ class Walker:
         passive_settings: PassiveSettings | None = None,
         strength: Mapping[str, float] | None = None,
         planar_set: str = "table3",
+        sdf: str | None = None,
     ) -> Walker:
-        """Build the walker of a `"spatial"` or `"planar"` skeleton."""
+        """Build the walker of a `"spatial"` or `"planar"` skeleton (`sdf`: text of your own)."""
         subject = subject or Subject()
         energy_settings = energy_settings or EnergySettings()
         muscles = MuscleSet.load(kind, subject, planar_set=planar_set, strength=strength or {})
         return cls(
             subject=subject,
-            skeleton=Skeleton.load(kind, subject, added_masses),
+            skeleton=Skeleton.load(kind, subject, added_masses, sdf),
             muscles=muscles,
             muscle_functions=MuscleFunctions(
                 muscles, muscle_settings or MuscleSettings(), energy_settings
