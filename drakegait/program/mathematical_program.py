@@ -7,10 +7,10 @@ binding is plain floats (`ExtractValue` in, `InitializeAutoDiff` out): packing
 those vectors is what costs time, so a binding per law would be four times slower.
 
 Drake calls the bindings one by one, while our arrays are cheapest for all
-control points together. A cost binding sees the whole design vector and
-evaluates all points at once; a constraint binding that finds its variables
-unchanged since then reads from that evaluation, and otherwise evaluates its
-own point.
+control points together. A visualization callback, which Drake's solvers call
+with the whole design vector at every new iterate, evaluates all points at
+once; a binding that finds its variables unchanged since then reads from that
+evaluation, and otherwise evaluates its own point.
 """
 
 from __future__ import annotations
@@ -72,6 +72,7 @@ def mathematical_program(
     constraints = tuple(
         _add_constraint(program, evaluator, variables) for evaluator in (*points, timing)
     )
+    program.AddVisualizationCallback(lambda x: gait_program.state(x), variables)
     first = gait_program.first_timing_row
     rows = [point.row_numbers for point in points]
     rows.append(np.arange(first, gait_program.num_constraints))
@@ -101,23 +102,12 @@ def _add_constraint(
 
 def _with_derivatives(x: np.ndarray, value: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
     """AutoDiffXd values of a function with the given Jacobian by `x`."""
-    if not _is_identity(x):
-        jacobian = jacobian @ ExtractGradient(x)
+    seed, num = ExtractGradient(x), len(x)
+    square = seed.shape == (num, num)
+    # Drake's solvers seed the identity: then the product is the Jacobian itself.
+    if not (square and np.count_nonzero(seed) == num and np.all(seed.diagonal() == 1.0)):
+        jacobian = jacobian @ seed
     return InitializeAutoDiff(value, jacobian)[:, 0]
-
-
-def _is_identity(x: np.ndarray) -> bool:
-    """Whether x carries the identity as derivatives, as Drake's solvers seed it.
-
-    Reading all derivatives costs more than the physics; first, middle and last entry tell the
-    solvers' seed from any other.
-    """
-    num = len(x)
-    for i in {0, num // 2, num - 1}:
-        derivatives = x[i].derivatives()
-        if len(derivatives) != num or derivatives[i] != 1.0 or np.count_nonzero(derivatives) != 1:
-            return False
-    return True
 
 
 class _PointEvaluator:
@@ -217,21 +207,31 @@ class _TimingEvaluator:
 
 
 class _CostEvaluator:
-    """One kind of cost as a function of the whole design vector."""
+    """One kind of cost as a function of the variables that it depends on."""
 
     def __init__(
         self, program: GaitProgram, cost: LocalCost, guard: Callable[[], None] | None = None
     ):
         self._program, self._cost, self._guard = program, cost, guard
         self.name = cost.kind
-        self.index = np.arange(program.num_variables)
+        index = np.unique(program.selection.index[:, cost.columns])
+        self.index = index[index >= 0]
 
     def __call__(self, x: np.ndarray) -> np.ndarray | float:
         if self._guard is not None:
             self._guard()
         if x.dtype != object:
-            return float(self._cost.values(self._program.state(x)).sum())
-        value = ExtractValue(x)[:, 0]
-        total = self._cost.values(self._program.state(value)).sum()
-        gradient = self._program.cost_gradient(self._cost, value)
+            return float(self._cost.values(self._program.state(self._full(x))).sum())
+        full = self._full(ExtractValue(x)[:, 0])
+        total = self._cost.values(self._program.state(full)).sum()
+        gradient = self._program.cost_gradient(self._cost, full)[self.index]
         return _with_derivatives(x, np.array([total]), gradient[None])[0]
+
+    def _full(self, value: np.ndarray) -> np.ndarray:
+        """A design vector with these variables; the others do not enter the cost."""
+        shared = self._program.last_state()
+        if shared is not None and np.array_equal(shared[0][self.index], value):
+            return shared[0]
+        full = np.zeros(self._program.num_variables)
+        full[self.index] = value
+        return full

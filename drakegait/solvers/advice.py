@@ -6,10 +6,13 @@ from collections.abc import Sequence
 
 from drakegait.program.gait_program import Violation
 
+_BALANCE = (
+    "the muscles may be too weak or the motion too fast: try a speed nearer to the reference, more "
+    "strength of the muscles across that joint, or a larger moment_tolerance"
+)
 _BY_LAW = {
-    "equations of motion": "the muscles may be too weak or the motion too fast: try a speed nearer "
-    "to the reference, more strength of the muscles across that joint, or a larger "
-    "moment_tolerance",
+    "equations of motion": _BALANCE,
+    "least-squares contact forces": _BALANCE,
     "foot contact": "the feet cannot reach their footprints: try a speed nearer to the reference or "
     "a larger contact_tolerance",
     "clearance": "the swing foot has no room: check joint limits and the reference",

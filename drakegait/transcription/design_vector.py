@@ -115,7 +115,8 @@ class DesignVector:
 
     Args:
         blocks: coordinates (n_c, M), forces (N_m, M), timing [T, theta_1..theta_P+1],
-            placement (5,), multipliers (num_points, 14), residuals (num_points, n_c), in this order.
+            placement (5,), multipliers (num_points, 14), residuals (num_points, n_c), in this
+            order.
     """
 
     ORDER = ("coordinates", "forces", "timing", "placement", "multipliers", "residuals")

@@ -145,9 +145,9 @@ def test_friction_and_free_moment(case):
             limit = contact.friction * (
                 contact.patch_radius * force[f"heel_{side} z"] + arm * force[f"toe_{side} z"]
             )
-            for name, sign in (("inward", -1.0), ("outward", 1.0)):
-                moment = sign * force[f"foot_{side} yaw"]
-                twist[place, f"foot_{side} {name}"] = limit + moment
+            moment = force[f"foot_{side} yaw"]  # about the upward vertical: left is positive
+            twist[place, f"foot_{side} turned left"] = limit - moment
+            twist[place, f"foot_{side} turned right"] = limit + moment
     assert_rows(problem, x, "friction", grip, 1e-6 * weight**2 * 1e-3)
     if problem.formulation.planar:
         assert by_kind(problem, x, "free moment") == {}

@@ -108,6 +108,18 @@ def test_other_derivatives_than_the_identity_go_through_the_chain_rule():
         np.testing.assert_allclose(ExtractGradient(value), expected, rtol=1e-6, atol=1e-5)
 
 
+def test_derivatives_that_look_like_the_identity_go_through_the_chain_rule_too():
+    arrays = program("planar-symmetric")
+    drake, x = mathematical_program(arrays), jiggled("planar-symmetric")
+    binding, dense = drake.constraints[0], dense_jacobian(arrays, x)
+    where = positions(drake, binding)
+    seed = np.eye(len(where))
+    seed[[1, 2]] = seed[[2, 1]]
+    value = binding.evaluator().Eval(InitializeAutoDiff(x[where], seed)[:, 0])
+    expected = dense[drake.rows[: len(value)]][:, where] @ seed
+    np.testing.assert_allclose(ExtractGradient(value), expected, rtol=1e-6, atol=1e-5)
+
+
 def test_bindings_follow_their_argument_not_an_earlier_evaluation():
     arrays = program("planar")
     drake = mathematical_program(arrays)

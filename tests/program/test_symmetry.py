@@ -14,7 +14,7 @@ from drakegait.study import GaitStudy
 from drakegait.walker import coordinates, feet
 
 SKELETONS = ("spatial", "planar")
-_SIDES = {"right": "left", "left": "right", "inward": "outward", "outward": "inward"}
+_SIDES = {"right": "left", "left": "right"}
 
 
 def mirrored(values):
