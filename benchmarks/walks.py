@@ -26,8 +26,8 @@ import string
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +36,9 @@ from drakegait.summary import versions
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.json"
 FOLDER = ROOT / "out" / "bench"  # a folder for each row
+NOT_PASSED = 3  # exit code of a gait that was found, but does not pass or has not converged
 BEGIN, END = "<!-- figures:begin -->", "<!-- figures:end -->"
+Columns = dict[str, Callable[[dict[str, Any]], str]]  # heading -> text of a record
 
 
 @dataclass(frozen=True)
@@ -118,15 +120,14 @@ def run(row: Row) -> dict[str, Any]:
             found["first_iteration_s"] = time.perf_counter() - started
         output.append(line)
     # `wait4` and not `wait`: it tells the resources of this child alone.
-    _, code, used = os.wait4(process.pid, 0)
+    _, status, used = os.wait4(process.pid, 0)
     found["wall_s"] = time.perf_counter() - started
-    process.returncode = code = os.waitstatus_to_exitcode(code)
+    process.returncode = found["exit_code"] = code = os.waitstatus_to_exitcode(status)
     unit = 2**20 if sys.platform == "darwin" else 2**10  # of ru_maxrss, per MiB
     found["peak_memory_MiB"] = used.ru_maxrss / unit
-    found["exit_code"] = code
     if row.walks and (folder / "summary.json").exists():
         found |= _summarised(json.loads((folder / "summary.json").read_text()))
-    elif code != 0:
+    elif code not in (0, NOT_PASSED):
         raise SystemExit(f"drakegait {shlex.join(words)} ended with {code}:\n{''.join(output)}")
     return found
 
@@ -151,12 +152,12 @@ def measure(row: Row, repeats: int) -> dict[str, Any]:
     record: dict[str, Any] = {"command": f"drakegait {row.command}", "runs": repeats}
     for name, first in runs[0].items():
         values = [each[name] for each in runs if name in each]
-        number = isinstance(first, (int, float)) and not isinstance(first, bool)
-        same = all(value == first for value in values)
-        if number and not same:
+        if all(value == first for value in values):
+            record[name] = first
+        elif isinstance(first, (int, float)) and not isinstance(first, bool):
             record[name] = statistics.median(values)
         else:
-            record[name] = first if same else " / ".join(map(str, values))
+            record[name] = " / ".join(map(str, values))
     record["measured"] = datetime.date.today().isoformat()
     return record
 
@@ -168,25 +169,22 @@ def machine() -> dict[str, Any]:
     if cpuinfo.exists():
         names = [line for line in cpuinfo.read_text().splitlines() if "model name" in line]
         model = names[0].partition(":")[2].strip() if names else model
-    try:
-        ipyopt = metadata.version("ipyopt")
-    except metadata.PackageNotFoundError:
-        ipyopt = "not installed"
     return {
         "processor": model,
         "cores": os.cpu_count(),
         "system": f"{platform.system()} {platform.machine()}",
-        "versions": versions() | {"ipyopt": ipyopt},
+        "versions": versions(),
     }
 
 
 def stored() -> dict[str, Any]:
     """Results of earlier runs on this machine with these versions; empty if it was another."""
+    here = machine()
     if RESULTS.exists():
         results = json.loads(RESULTS.read_text(encoding="utf-8"))
-        if results["machine"] == machine():
+        if results["machine"] == here:
             return results
-    return {"machine": machine(), "rows": {}}
+    return {"machine": here, "rows": {}}
 
 
 def store(results: dict[str, Any]) -> None:
@@ -201,14 +199,14 @@ def store(results: dict[str, Any]) -> None:
 def table(results: dict[str, Any], brief: bool) -> str:
     """The results as Markdown; `brief` for readers who want to know whether to wait."""
     rows = results["rows"]
-    walks = [record for name, record in rows.items() if ROWS[name].walks]
-    others = [record for name, record in rows.items() if not ROWS[name].walks]
-    columns = {
+    walks = [record for record in rows.values() if "status" in record]
+    others = [record for record in rows.values() if "status" not in record]
+    columns: Columns = {
         "walk": lambda row: f"`{row['command'].removeprefix('drakegait ')}`",
         "first iteration [s]": lambda row: _number(row.get("first_iteration_s"), ".1f"),
         "wall [s]": lambda row: _number(row["wall_s"], ".0f" if row["wall_s"] > 20 else ".1f"),
-        "iterations": lambda row: _number(row.get("iterations"), ".0f"),
-        "ended": lambda row: str(row.get("status", "-")).replace("_", " "),
+        "iterations": lambda row: _number(row["iterations"], ".0f"),
+        "ended": lambda row: row["status"].replace("_", " "),
         "check": lambda row: {True: "passed", False: "not passed"}.get(row.get("passed"), "-"),
         "energy [J/m]": lambda row: _number(row.get("cost_of_transport_J_per_m"), ".1f"),
         "deviation [s]": lambda row: _number(row.get("deviation_s"), ".3f"),
@@ -217,17 +215,23 @@ def table(results: dict[str, Any], brief: bool) -> str:
     if brief:
         for name in ("first iteration [s]", "deviation [s]"):
             del columns[name]
-    parts = [_markdown(walks, columns)] if walks else []
-    if others and not brief:
+    parts = [_markdown(walks, columns)]
+    if not brief:
         named = {"command": lambda row: f"`{row['command']}`"}
         named |= {name: columns[name] for name in ("wall [s]", "memory [MiB]")}
         parts.append(_markdown(others, named))
-    if "evaluation" in results and not brief:
-        parts.append(_evaluation(results["evaluation"]))
-    return "\n\n".join([*parts, _measured_on(results)])
+        evaluation = results.get("evaluation", {}).items()
+        parts.append(_markdown(
+            [{"name": name, "value": value} for name, value in evaluation],
+            {"one evaluation with all derivatives": lambda row: row["name"],
+             "[ms]": lambda row: format(row["value"], ".1f")},
+        ))  # fmt: skip
+    return "\n\n".join([*filter(None, parts), _measured_on(results)])
 
 
-def _markdown(rows: list[dict[str, Any]], columns: dict[str, Any]) -> str:
+def _markdown(rows: list[dict[str, Any]], columns: Columns) -> str:
+    if not rows:
+        return ""
     right = [name.endswith("]") or name == "iterations" for name in columns]
     lines = ["| " + " | ".join(columns) + " |"]
     lines.append("|" + "|".join("---:" if each else "---" for each in right) + "|")
@@ -239,23 +243,12 @@ def _number(value: float | None, form: str) -> str:
     return "-" if value is None else format(value, form)
 
 
-def _evaluation(found: dict[str, float]) -> str:
-    parts = [{"name": name, "value": value} for name, value in found.items()]
-    columns = {
-        "one evaluation with all derivatives": lambda row: row["name"],
-        "[ms]": lambda row: format(row["value"], ".1f"),
-    }
-    return _markdown(parts, columns)
-
-
 def _measured_on(results: dict[str, Any]) -> str:
     on, records = results["machine"], results["rows"].values()
     days = sorted({record["measured"] for record in records})
     runs = sorted({record["runs"] for record in records})
     how = "one run each" if runs == [1] else f"medians of {' or '.join(map(str, runs))} runs"
-    software = ", ".join(
-        f"{name} {on['versions'][name]}" for name in ("python", "drake", "casadi", "ipyopt")
-    )
+    software = ", ".join(f"{name} {on['versions'][name]}" for name in ("python", "drake", "casadi"))
     return (
         f"{how.capitalize()}, {' to '.join(dict.fromkeys([days[0], days[-1]]))}, on "
         f"{on['cores']} cores of {on['processor']} ({on['system']}) with {software}."
@@ -264,8 +257,7 @@ def _measured_on(results: dict[str, Any]) -> str:
 
 def write_readme(path: Path, text: str) -> None:
     """Put `text` between the marks of a README file."""
-    page = path.read_text(encoding="utf-8")
-    head, begin, rest = page.partition(BEGIN)
+    head, begin, rest = path.read_text(encoding="utf-8").partition(BEGIN)
     _, end, tail = rest.partition(END)
     if not begin or not end:
         raise SystemExit(f"{path} lacks the marks {BEGIN} and {END}.")
@@ -284,9 +276,9 @@ def main() -> None:
     if asked.repeats < 1:
         parser.error(f"--repeats is {asked.repeats}, but must be at least 1")
     if asked.readme:
-        if not RESULTS.exists():
-            parser.error(f"there is no {RESULTS.name} yet: measure first")
-        results = json.loads(RESULTS.read_text(encoding="utf-8"))
+        results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
+        if not results.get("rows"):
+            parser.error(f"{RESULTS.name} holds no rows yet: measure first")
         write_readme(ROOT / "README.md", table(results, brief=True))
         write_readme(RESULTS.with_name("README.md"), table(results, brief=False))
         return

@@ -220,6 +220,21 @@ def test_choices_and_options_add_up():
 # Refinement ------------------------------------------------------------------------------------
 
 
+def test_events_go_further_than_their_first_bounds_let_them():
+    """Slow walking needs longer double support; another round moves the bounds along."""
+    slow, rounds = STUDY.replace(speed=0.8), set()
+    found = solve(
+        slow, refine=False, time_limit=60.0, report=lambda progress: rounds.add(progress.round)
+    )
+    assert found.converged
+    formulation = slow.formulation()
+    moved = np.abs(found.values.events - np.array(formulation.event_centres))
+    assert moved.max() > formulation.event_reach
+    assert max(rounds) > 1
+    last = GaitProgram(found.study.formulation(found.values.events))
+    assert last.violations(last.design.pack(found.values)).max() < 2e-3
+
+
 def test_control_points_are_added_where_the_check_fails():
     coarse = STUDY.replace(interior_points=(0, 0, 2, 1))
     first = solve(coarse, refine=False, time_limit=60.0)

@@ -4,7 +4,7 @@
     python docs/pictures/make_pictures.py out/walk
 
 `replay.png` is a view of the replay in a browser without a window (Chromium or Chrome must be
-installed); `joint_angles.png` is the figure of that name. Both are made small: at most 128 colours.
+installed); `joint_angles.png` is the figure of that name.
 """
 
 from __future__ import annotations
@@ -22,11 +22,10 @@ from drakegait import Gait, plot, replay
 
 FOLDER = Path(__file__).resolve().parent
 WIDTH = 1000  # [pixel] of both pictures
-COLOURS = 128
 LARGEST = 250_000  # [byte] of a file
 WINDOW = (1500, 900)  # [pixel] of the browser
-CUT = (150, 125, 1450, 745)  # of the browser's view: left, upper, right, lower [pixel]
-SHARE = 1.52  # strides after the start: just after a left heel strike
+CUT = (200, 115, 1420, 805)  # of the browser's view: left, upper, right, lower [pixel]
+SHARE = 1.02  # strides after the start: just after a right heel strike
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
 # No window, no calls to the network, and a graphics card made of software.
 FLAGS = (
@@ -34,13 +33,13 @@ FLAGS = (
     "--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist", "--timeout=9000",
 )  # fmt: skip
-# Holds the film at an instant once it runs, and takes the legend and the controls away.
-HOLD = """<script>setTimeout(() => {{
+# Holds the film at an instant, again and again until the picture is taken, without the legend.
+HOLD = """<script>setInterval(() => {{
   viewer.animator.pause(); viewer.animator.seek({time});
   document.querySelectorAll(".dg, body > div:not(#meshcat-pane)").forEach((box) => {{
     box.style.display = "none";
   }});
-}}, 2500)</script></body>"""
+}}, 50)</script></body>"""
 
 
 def browser() -> str:
@@ -67,12 +66,14 @@ def screenshot(gait: Gait, folder: Path) -> Image.Image:
     return Image.open(picture).convert("RGB").crop(CUT)
 
 
-def save(picture: Image.Image, name: str) -> None:
-    """Write a small PNG."""
+def save(picture: Image.Image, name: str, colours: int | None = None) -> None:
+    """Write a PNG of few bytes, with a palette of so many colours if that is enough for it."""
     size = (WIDTH, round(WIDTH * picture.height / picture.width))
     small = picture.convert("RGB").resize(size, Image.Resampling.LANCZOS)
     path = FOLDER / f"{name}.png"
-    small.quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+    if colours is not None:
+        small = small.quantize(colours, dither=Image.Dither.NONE)
+    small.save(path, optimize=True)
     print(f"{path}: {size[0]} x {size[1]}, {path.stat().st_size / 1000:.0f} kB")
     if path.stat().st_size > LARGEST:
         raise SystemExit(f"{path} is larger than {LARGEST / 1000:.0f} kB.")
@@ -87,7 +88,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = Path(name)
         plot(gait, folder)
-        save(Image.open(folder / "joint_angles.png"), "joint_angles")
+        save(Image.open(folder / "joint_angles.png"), "joint_angles", colours=256)
         save(screenshot(gait, folder), "replay")
 
 

@@ -120,14 +120,14 @@ class Deviation(LocalCost):
     def __init__(self, formulation: Formulation, points: ControlPoints):
         super().__init__(formulation, points)
         reference = formulation.reference
-        self._coordinate_weight = reference.coordinate_weight / reference.coordinate_sigma**2
+        self.coordinate_weight = reference.coordinate_weight / reference.coordinate_sigma**2
         sigma = np.where(reference.force_weight > 0.0, reference.force_sigma, 1.0)
-        self._force_weight = reference.force_weight / sigma**2
+        self.force_weight = reference.force_weight / sigma**2
         masks = no_dependence(1, points.layout)
         masks["coordinates"][:] = True
         for foot in range(2):
             for axis in range(3):
-                if self._force_weight[foot, axis] > 0.0:
+                if self.force_weight[foot, axis] > 0.0:
                     rows = foot * feet.ROWS_PER_FOOT + np.array([axis, axis + 3])
                     masks["multipliers"][0, rows] = True
         masks["time"][:] = True
@@ -136,7 +136,11 @@ class Deviation(LocalCost):
             pattern = pattern.with_projected_multipliers()
         self.columns = np.nonzero(pattern.local(points.layout)[0])[0]
 
-    def _differences(self, state: LocalState, order: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    def differences(self, state: LocalState, order: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates (num, n) and ground reactions (num, 2, 3) minus the reference.
+
+        With `order` 1 minus the reference's slopes by tau alone.
+        """
         reference, tau = self.formulation.reference, state.tau
         if order:
             return (
@@ -150,9 +154,9 @@ class Deviation(LocalCost):
 
     def rate(self, state: LocalState) -> np.ndarray:
         """D, the integrand of (11), at each control point (num,)."""
-        motion, force = self._differences(state)
-        return (motion**2 @ self._coordinate_weight) + np.einsum(
-            "pfa,fa->p", force**2, self._force_weight
+        motion, force = self.differences(state)
+        return (motion**2 @ self.coordinate_weight) + np.einsum(
+            "pfa,fa->p", force**2, self.force_weight
         )
 
     def values(self, state: LocalState) -> np.ndarray:
@@ -161,10 +165,10 @@ class Deviation(LocalCost):
 
     def gradient(self, state: LocalState) -> np.ndarray:
         weight, num = self.formulation.deviation_weight, state.points.num
-        motion, force = self._differences(state)
-        motion_slope, force_slope = self._differences(state, order=1)
-        by_motion = 2.0 * motion * self._coordinate_weight
-        by_force = 2.0 * force * self._force_weight
+        motion, force = self.differences(state)
+        motion_slope, force_slope = self.differences(state, order=1)
+        by_motion = 2.0 * motion * self.coordinate_weight
+        by_force = 2.0 * force * self.force_weight
         tau = (by_motion * motion_slope).sum(axis=1) + (by_force * force_slope).sum(axis=(1, 2))
         both_points = np.zeros((num, 2, feet.ROWS_PER_FOOT))
         both_points[:, :, 0:3] = both_points[:, :, 3:6] = by_force

@@ -122,9 +122,16 @@ class LocalState:
         v[:, 0] += self.stride_length / self.stride_time[:, 0]
         return v
 
-    def motion_tau_tau(self) -> np.ndarray:
-        """Second derivative by tau of the coordinates without their steady advance."""
-        return np.einsum("pcw,pw->pc", self._coordinates, self.basis[2])
+    def bending(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Second derivatives by tau of motion and forces (num, functions, 3), without the advance.
+
+        Args:
+            rows: second derivatives by tau of the basis rows of the three orders.
+        """
+        return (
+            np.einsum("pcw,paw->pca", self._coordinates, rows),
+            np.einsum("pcw,paw->pca", self._forces, rows),
+        )
 
     # Contact -----------------------------------------------------------------------------
 

@@ -1,0 +1,139 @@
+"""The exact Hessian of the Lagrangian of a `GaitProgram`.
+
+    H = sigma f_xx + sum_r lambda_r (g_r)_xx
+
+made of small dense blocks at each control point (`hessian_blocks`), added up
+over the control points that share coefficients. Quasi-Newton updates stall in
+the flat valleys of this problem and report an optimum several per cent too
+high; with H, interior-point iterations end where the KKT conditions hold.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from drakegait.errors import InvalidInput
+from drakegait.program.cost_hessian import (
+    add_deviation,
+    add_energy_weights,
+    add_footprints,
+    add_friction,
+    power_weight,
+)
+from drakegait.program.excitation import MuscleChain
+from drakegait.program.gait_program import GaitProgram
+from drakegait.program.hessian_blocks import HessianBlocks, places
+from drakegait.program.hessian_chain import Directions, carry
+from drakegait.program.local_costs import Deviation, MetabolicCost
+from drakegait.program.local_rows import LocalRows
+from drakegait.program.local_state import LocalState
+from drakegait.program.physical_hessian import LawWeights, physical_hessian
+from drakegait.walker.dynamics_curvature import DynamicsCurvature
+
+
+class LagrangianHessian:
+    """Second derivatives of a program with lifted multipliers.
+
+    Attributes:
+        rows, columns: positions of the entries, lower triangle, each once.
+
+    Raises:
+        InvalidInput: for projected multipliers, whose elimination has no second derivatives here.
+    """
+
+    def __init__(self, program: GaitProgram):
+        if not program.formulation.lifted:
+            raise InvalidInput("multipliers", "projected", "lifted for exact second derivatives")
+        self._program = program
+        self._dynamics = DynamicsCurvature(program.formulation.walker.skeleton)
+        self._spans = MuscleChain(program.formulation, program.points)
+        self._numbers = {type(item): k for k, item in enumerate(program.constraints)}
+        self._locate()
+
+    @property
+    def num_entries(self) -> int:
+        """Number of entries of the lower triangle that may differ from zero."""
+        return len(self.rows)
+
+    def values(self, x: np.ndarray, multipliers: np.ndarray, objective: float) -> np.ndarray:
+        """Entries at (`rows`, `columns`).
+
+        Args:
+            x: design vector.
+            multipliers: lambda of the rows (num_constraints,).
+            objective: factor sigma of the cost.
+        """
+        program = self._program
+        local = self._local(program.state(x), multipliers, objective).ravel()[self._kept]
+        timing = program.timing.curvature(multipliers[program.first_timing_row :])
+        entries = np.concatenate([local * self._factor, timing])
+        return np.bincount(self._entry, entries, self.num_entries)
+
+    def _local(self, state: LocalState, multipliers: np.ndarray, objective: float) -> np.ndarray:
+        """Second derivatives by local variables (num, entries)."""
+        weights = self._weights(multipliers)
+        costs = {type(cost): cost for cost in self._program.costs}
+        blocks = HessianBlocks(state)
+        directions = Directions.of(state, blocks)
+        power = np.zeros(len(state.q))
+        if MetabolicCost in costs:
+            power = power_weight(state, objective)
+            add_energy_weights(
+                blocks, costs[MetabolicCost], directions, self._spans, objective
+            )
+        carry(
+            blocks, physical_hessian(state, self._dynamics, weights, power), directions, self._spans
+        )
+        if Deviation in costs:
+            add_deviation(blocks, costs[Deviation], objective)
+        add_friction(blocks, weights)
+        add_footprints(blocks, weights)
+        return blocks.values()
+
+    def _weights(self, multipliers: np.ndarray) -> LawWeights:
+        program, padded = self._program, np.append(multipliers, 0.0)
+
+        def of(kind: type[LocalRows]) -> np.ndarray | None:
+            number = self._numbers.get(kind)
+            if number is None:
+                return None
+            # A row that does not hold somewhere has the number -1: the zero at the end.
+            return padded[program.row_numbers[number]] / program.constraints[number].scale
+
+        return of
+
+    # Sparsity ----------------------------------------------------------------------------
+
+    def _locate(self) -> None:
+        program = self._program
+        left, right = places(self._probe_state(), self._spans)
+        index, factor = program.selection.index, program.selection.factor
+        row, column = index[:, left], index[:, right]
+        kept = (row >= 0) & (column >= 0) & self._possible()
+        self._kept = np.flatnonzero(kept)
+        scale = (factor[:, left] * factor[:, right])[kept]
+        row, column = row[kept], column[kept]
+        # One local entry off the diagonal stands for two; where a mirror makes both ends the
+        # same variable they fall on one place of the diagonal.
+        doubled = (row == column) & np.broadcast_to(left != right, kept.shape)[kept]
+        self._factor = np.where(doubled, 2.0 * scale, scale)
+        row = np.concatenate([row, program.timing.curved_rows])
+        column = np.concatenate([column, program.timing.curved_columns])
+        keys = np.maximum(row, column) * program.num_variables + np.minimum(row, column)
+        keys, self._entry = np.unique(keys, return_inverse=True)
+        self.rows, self.columns = keys // program.num_variables, keys % program.num_variables
+
+    def _probe_state(self) -> LocalState:
+        """A state without accidental zeros; its basis rows reach all of their windows."""
+        program, generator = self._program, np.random.default_rng(0)
+        design, points = program.design, program.points
+        low, high = np.maximum(design.lower, -1e3), np.minimum(design.upper, 1e3)
+        x = generator.uniform(0.4, 0.6, design.num_variables) * (high - low) + low
+        state = LocalState(program.formulation, points, program.selection.values(x))
+        state.basis = generator.uniform(0.5, 1.5, (4, points.num, points.layout.width))
+        return state
+
+    def _possible(self) -> np.ndarray:
+        """Entries that can differ from zero, found with random weights."""
+        weights = np.random.default_rng(1).uniform(0.5, 1.5, self._program.num_constraints)
+        return self._local(self._probe_state(), weights, 1.0) != 0.0

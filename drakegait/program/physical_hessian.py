@@ -1,0 +1,116 @@
+"""Weighted second derivatives of laws and energy by physical quantities.
+
+At each control point the Lagrangian is seen as a function of coordinates and
+muscle forces with their first two time derivatives, contact multipliers and
+residuals; muscle lengths are folded into the coordinates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from drakegait.program.equations_of_motion import EquationsOfMotion
+from drakegait.program.excitation import Excitation
+from drakegait.program.foot_contact import Clearance, FootContact
+from drakegait.program.joint_limits import JointLimits
+from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
+from drakegait.program.local_rows import LocalRows
+from drakegait.program.local_state import LocalState
+from drakegait.walker import feet
+from drakegait.walker.dynamics_curvature import DynamicsCurvature, Weights
+
+LawWeights = Callable[[type[LocalRows]], np.ndarray | None]
+"""Multipliers of one law over physical rows (num, num_rows); None if it is not stated."""
+
+
+@dataclass(frozen=True)
+class PhysicalHessian:
+    """Second and first derivatives of the Lagrangian; orders 0, 1, 2 of time have an axis.
+
+    Attributes:
+        motion, motion_first: by coordinates (num, n, 3, n, 3) and (num, n, 3).
+        force, force_first: by muscle forces (num, m, 3, 3) and (num, m, 3).
+        cross: by a muscle's force and its length (num, m, 3, 3).
+        multipliers, residuals: by those and the coordinates (num, 14, n), (num, n, n).
+    """
+
+    motion: np.ndarray
+    motion_first: np.ndarray
+    force: np.ndarray
+    force_first: np.ndarray
+    cross: np.ndarray
+    multipliers: np.ndarray
+    residuals: np.ndarray
+
+
+def physical_hessian(
+    state: LocalState, curvature: DynamicsCurvature, weights: LawWeights, power: np.ndarray
+) -> PhysicalHessian:
+    """All laws by their multipliers, and the muscles' power by the weight `power` (num,)."""
+    walker = state.formulation.walker
+    balance = weights(EquationsOfMotion)
+    contact = weights(FootContact).copy()
+    contact[:, list(feet.VERTICAL_ROWS)] += weights(Clearance)
+    velocities = weights(LeastSquaresMultipliers)
+    blocks = curvature.evaluate(
+        state.q, state.v, state.motion.acceleration, state.multipliers, state.residuals,
+        Weights(balance, velocities, contact),
+    )  # fmt: skip
+    num, n = state.q.shape
+    motion = np.zeros((num, n, 3, n, 3))
+    motion[:, :, 0, :, 0] = blocks.qq - walker.passive.curvature(state.q, balance)
+    motion[:, :, 0, :, 1] = blocks.qv
+    motion[:, :, 1, :, 0] = np.swapaxes(blocks.qv, 1, 2)
+    motion[:, :, 1, :, 1] = blocks.vv
+    motion[:, :, 0, :, 2] = blocks.qa
+    motion[:, :, 2, :, 0] = np.swapaxes(blocks.qa, 1, 2)
+    first = _first_derivatives(state, balance, velocities, contact, weights(JointLimits))
+    muscles, by_muscle = _muscles(state, weights(Excitation), power)
+    arms = walker.muscles.moment_arms
+    # Muscle lengths are l0 - arms q.
+    motion += np.einsum("mi,pmab,mj->piajb", arms, muscles[:, :, 3:, 3:], arms, optimize=True)
+    first -= np.einsum("pma,mi->pia", by_muscle[:, :, 3:], arms)
+    force_first = by_muscle[:, :, :3].copy()
+    force_first[:, :, 0] -= balance @ arms.T
+    return PhysicalHessian(
+        motion, first, muscles[:, :, :3, :3], force_first, muscles[:, :, :3, 3:],
+        np.swapaxes(blocks.ql, 1, 2), np.swapaxes(blocks.qe, 1, 2),
+    )  # fmt: skip
+
+
+def _first_derivatives(
+    state: LocalState,
+    balance: np.ndarray,
+    velocities: np.ndarray,
+    contact: np.ndarray,
+    limits: np.ndarray | None,
+) -> np.ndarray:
+    """Gradient of the weighted laws by coordinates, velocities, accelerations (num, n, 3)."""
+    dynamics, formulation = state.dynamics, state.formulation
+    turning = formulation.walker.skeleton.contact_velocity_derivative(state.q, state.residuals)
+    by_q = np.einsum("pi,pij->pj", balance, dynamics.by_q)
+    by_q += np.einsum("pr,prj->pj", velocities, turning)
+    by_q += np.einsum("pr,prj->pj", contact, state.contact_positions[1])
+    if limits is not None:
+        names = formulation.walker.coordinate_names
+        for k, limit in enumerate(formulation.limits):
+            by_q[:, names.index(limit.coordinate)] += limits[:, k]
+    by_v = np.einsum("pi,pij->pj", balance, dynamics.by_v)
+    by_a = np.einsum("pi,pij->pj", balance, dynamics.mass_matrix)
+    return np.stack([by_q, by_v, by_a], axis=-1)
+
+
+def _muscles(
+    state: LocalState, excitation: np.ndarray, power: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Weighted Hessian (num, m, 6, 6) and gradient (num, m, 6) by the muscles' inputs."""
+    functions = state.formulation.walker.muscle_functions
+    num, m = state.muscle_inputs.shape[:2]
+    weights = np.concatenate(
+        [excitation.reshape(num, m, 2), np.broadcast_to(power[:, None, None], (num, m, 1))], axis=2
+    )
+    hessian = functions.hessian(state.muscle_inputs, weights, state.smoothing)
+    return hessian, np.einsum("pmo,pmok->pmk", weights, state.muscles[1])
