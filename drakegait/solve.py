@@ -150,9 +150,7 @@ class _Run:
             from drakegait.solvers.ipopt_mumps import solve_with_ipopt_mumps as solve_program
         else:
             from drakegait.solvers.drake import solve_with_drake as solve_program
-        if warm and options.barrier_start == 0.0:
-            options = options.replace(barrier_start=1e-4)
-        self.solution = solve_program(self.program, x, options, self.monitor)
+        self.solution = solve_program(self.program, x, options, self.monitor, warm)
         self.solver_time += time.monotonic() - started
         self.iterations += self.solution.iterations
 

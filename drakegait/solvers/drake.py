@@ -6,6 +6,7 @@ import os
 import re
 import tempfile
 from pathlib import Path
+from typing import Any
 
 # Drake's IPOPT factorises with SPRAL, which needs these before the library is loaded.
 os.environ.setdefault("OMP_CANCELLATION", "TRUE")
@@ -43,7 +44,7 @@ def solve_with_drake(
     x: np.ndarray,
     options: SolverOptions,
     monitor: Monitor,
-    warm: Solution | None = None,
+    warm: bool = False,
 ) -> Solution:
     """Minimise with Drake's `IpoptSolver` or `SnoptSolver` from `x`; see `Solution`."""
 
@@ -62,7 +63,7 @@ def solve_with_drake(
         log = Path(folder) / "solver.log"
         if options.solver == "ipopt":
             solver: SolverInterface = IpoptSolver()
-            chosen = _ipopt(options, monitor, warm is not None, log)
+            chosen = _ipopt(options, warm, log)
         else:
             solver = SnoptSolver()
             chosen = _snopt(options, monitor, log)
@@ -80,14 +81,8 @@ def solve_with_drake(
     return _read_snopt(drake, result, monitor, text, x)
 
 
-def _ipopt(options: SolverOptions, monitor: Monitor, warm: bool, log: Path) -> dict:
-    # Multipliers cannot be handed in through Drake, so a warm start is in x and mu only.
-    chosen = {
-        name: value
-        for name, value in ipopt_options(options, warm).items()
-        if not name.startswith("warm_start")
-    }
-    return chosen | {
+def _ipopt(options: SolverOptions, warm: bool, log: Path) -> dict[str, Any]:
+    return ipopt_options(options, warm) | {
         "linear_solver": "spral",
         "spral_order": "metis",  # the default ordering is 45 times slower here
         "spral_scaling": "none",
@@ -96,7 +91,7 @@ def _ipopt(options: SolverOptions, monitor: Monitor, warm: bool, log: Path) -> d
     }
 
 
-def _snopt(options: SolverOptions, monitor: Monitor, log: Path) -> dict:
+def _snopt(options: SolverOptions, monitor: Monitor, log: Path) -> dict[str, Any]:
     return {
         "Major optimality tolerance": options.optimality,
         "Major feasibility tolerance": min(options.feasibility, 1e-4),

@@ -22,6 +22,11 @@ class SolverOptions(Settings):
         SOLVERS,
         "ipopt-mumps: IPOPT with MUMPS, sparse arrays; ipopt, snopt: Drake's own solvers",
     )
+    second_derivatives: str = choice(
+        "exact",
+        ("exact", "limited-memory"),
+        "curvature in ipopt-mumps; projected multipliers and Drake's solvers use limited memory",
+    )
     optimality: float = quantity(1e-3, "-", 1e-8, 1e-1, "tolerance on the scaled KKT conditions")
     feasibility: float = quantity(1e-3, "-", 1e-8, 1e-1, "violation of a row, in its tolerances")
     max_iterations: float = quantity(500, "-", 1, 1e5, "iterations in one round")
