@@ -184,7 +184,9 @@ def ground_forces(judged: Judged) -> list[CheckItem]:
     force, by_point = loads.ground_reactions, loads.point_forces[..., 2]
     active = loads.active.reshape(-1, 2, feet.ROWS_PER_FOOT)
     standing = active.any(axis=2)
-    grip = contact.friction * np.maximum(force[..., 2], LEAST_LOAD * judged.body_weight)
+    # Horizontal forces that the tolerance of the equations of motion covers are no slip.
+    unseen = SLACK * judged.gait.study.tolerances.force_tolerance
+    grip = np.maximum(contact.friction * force[..., 2], unseen)
     slip = np.where(standing, np.hypot(force[..., 0], force[..., 1]) / grip, -np.inf)
     # The pivot is the heel while it is down, then the toe.
     arm = np.full(by_point.shape, contact.patch_radius)

@@ -91,7 +91,7 @@ class Formulation:
     limits: tuple[JointLimit, ...] = ()
     lifted: bool = True
     event_centres: tuple[float, ...] = ()
-    event_reach: float = 0.03
+    event_reach: float = 0.045
 
     @property
     def planar(self) -> bool:

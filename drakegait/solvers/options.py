@@ -29,6 +29,14 @@ class SolverOptions(Settings):
     )
     optimality: float = quantity(1e-3, "-", 1e-8, 1e-1, "tolerance on the scaled KKT conditions")
     feasibility: float = quantity(1e-3, "-", 1e-8, 1e-1, "violation of a row, in its tolerances")
+    cost_change: float = quantity(
+        1e-4,
+        "-",
+        0.0,
+        1e-2,
+        "ipopt-mumps also ends where the cost has changed by less than this part of itself in 25 "
+        "iterations that obey all laws (paper: 1e-2 spatial, 1e-4 planar); 0: never",
+    )
     max_iterations: float = quantity(500, "-", 1, 1e5, "iterations in one round")
     time_limit: float = quantity(3600.0, "s", 0.1, 1e6, "wall time of the whole solve")
     barrier_start: float = quantity(
