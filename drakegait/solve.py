@@ -69,8 +69,26 @@ def solve(
             if not failing or monitor.stop_reason is not None:
                 break
             run.refine(failing)
-            gait = run.gait(started)
+            denser = run.gait(started)
+            if denser.outcome.status != "converged":
+                return _unrefined(gait, denser)
+            gait = denser
     return gait
+
+
+def _unrefined(gait: Gait, denser: Gait) -> Gait:
+    """The last converged gait, with what was spent on a round that did not end."""
+    outcome = replace(
+        gait.outcome,
+        iterations=denser.outcome.iterations,
+        wall_time=denser.outcome.wall_time,
+        setup_time=denser.outcome.setup_time,
+        refinements=(
+            *denser.outcome.refinements,
+            f"the last round was dropped: {denser.outcome.message}",
+        ),
+    )
+    return replace(gait, outcome=outcome)
 
 
 def check_guess(study: GaitStudy, guess: Gait) -> None:

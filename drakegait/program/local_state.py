@@ -4,8 +4,7 @@ From the local variables of `ControlPoints` follow the motion and the muscle
 forces with their time derivatives, and from those the equations of motion
 (15), the contact kinematics and the muscles' activations and energy, all with
 first derivatives by physical quantities. Constraints and costs read what they
-need; `chain` turns their partial derivatives into derivatives by local
-variables.
+need; `chain` turns partial derivatives into those by local variables.
 """
 
 from __future__ import annotations
@@ -69,9 +68,16 @@ class LocalState:
         self.points = points
         self.smoothing = smoothing
         self.results: dict[tuple[str, str], np.ndarray] = {}  # rows made from this state
-        split = points.layout.split(z)
-        self._coordinates, self._forces, self.time, self.placement, self._multipliers = split[:5]
-        self.residuals = split[5]
+        # Drake ends the process where a position or velocity is no number: such points stand
+        # still instead, and their equations of motion and costs become no numbers.
+        self._lost = ~np.isfinite(z[:, : points.layout.multipliers]).all(axis=1)
+        if self._lost.any():
+            z = z.copy()
+            motion = np.r_[: points.layout.forces, points.layout.time : points.layout.multipliers]
+            z[np.ix_(self._lost, motion)] = 0.5
+        parts = points.layout.split(z)
+        self._coordinates, self._forces, self.time, self.placement = parts[:4]
+        self._multipliers, self.residuals = parts[4:]
         self.stride_time = self.time[:, :1]
         self.stride_length = self.placement[:, 0] + self.placement[:, 1]
         start, end = self.time[:, 2], self.time[:, 3]
@@ -178,7 +184,9 @@ class LocalState:
     @cached_property
     def muscle_torques(self) -> np.ndarray:
         """B A f of eq. (24), (num, num_coordinates)."""
-        return self.forces.value @ self.formulation.walker.muscles.moment_arms
+        torques = self.forces.value @ self.formulation.walker.muscles.moment_arms
+        torques[self._lost] = np.nan
+        return torques
 
     @cached_property
     def dynamics(self) -> Dynamics:
@@ -266,18 +274,16 @@ class LocalState:
         """Excitation rows [1/s] and power [W] without derivatives (num, num_muscles, 3)."""
         if "muscles" in self.__dict__:
             return self.muscles[0]
-        return self.formulation.walker.muscle_functions.evaluate(
-            self.muscle_inputs, self.smoothing
-        )
+        functions = self.formulation.walker.muscle_functions
+        return functions.evaluate(self.muscle_inputs, self.smoothing)
 
     @cached_property
     def muscle_inputs_by_tau(self) -> np.ndarray:
         """Change of `muscle_inputs` with tau at fixed coefficients (num, num_muscles, 6)."""
         arms = self.formulation.walker.muscles.moment_arms
-        by_tau = self.motion.by_tau
         force = np.moveaxis(self.forces.by_tau, 0, -1)
         # hat_x, which advances steadily, spans no muscle.
-        length = np.moveaxis(-by_tau @ arms.T, 0, -1)
+        length = np.moveaxis(-self.motion.by_tau @ arms.T, 0, -1)
         return np.concatenate([force, length], axis=-1)
 
     # Ground reactions --------------------------------------------------------------------
@@ -285,11 +291,10 @@ class LocalState:
     @cached_property
     def ground_reactions(self) -> np.ndarray:
         """Force on each foot (num, 2, 3) [N]: sum of heel and toe."""
-        by_foot = self.multipliers.reshape(-1, 2, feet.ROWS_PER_FOOT)
-        return by_foot[:, :, 0:3] + by_foot[:, :, 3:6]
+        return feet.foot_forces(self.multipliers)
 
     @cached_property
     def share_of_cycle(self) -> np.ndarray:
         """Integration weight of each control point as part of the stride (num,)."""
         share = np.einsum("pe,pe->p", self.points.weights, self.time[:, 1:4])
-        return self.formulation.repeats * share
+        return np.where(self._lost, np.nan, self.formulation.repeats * share)

@@ -110,6 +110,12 @@ def placed_rows_at_start(phase: int, planar: bool = False) -> np.ndarray:
     return active_rows(phase - 1, planar) | active_rows(phase, planar)
 
 
+def foot_forces(multipliers: np.ndarray) -> np.ndarray:
+    """Force on each foot (..., 2, 3) [N], heel and toe together, of multipliers (..., 14)."""
+    by_foot = multipliers.reshape(*multipliers.shape[:-1], 2, ROWS_PER_FOOT)
+    return by_foot[..., 0:3] + by_foot[..., 3:6]
+
+
 def left_print(phase: int, on_event: bool = False) -> int:
     """Which footprint the left foot uses: 0 the previous one, 1 the next.
 
