@@ -58,6 +58,7 @@ def solve(
     options = (options or SolverOptions()).replace(**choices)
     if guess is not None:
         check_guess(study, guess)
+    _solver(options.solver)
     started = time.monotonic()
     with Monitor(options.time_limit, report) as monitor:
         run = _Run(study, options, monitor)
@@ -101,6 +102,25 @@ def check_guess(study: GaitStudy, guess: Gait) -> None:
     if theirs != ours:
         allowed = f"{ours} or {ours}-symmetric, as the study is"
         raise InvalidInput("model of the guess", guess.study.model, allowed)
+
+
+def _solver(name: str) -> Callable[..., Solution]:
+    """The function behind a solver's name; loads its libraries.
+
+    Raises:
+        InvalidInput: ipopt-mumps where `ipyopt` is not installed; it has wheels for Linux on
+            x86-64 only, Drake's solvers run everywhere.
+    """
+    if name != "ipopt-mumps":
+        from drakegait.solvers.drake import solve_with_drake
+
+        return solve_with_drake
+    try:
+        from drakegait.solvers.ipopt_mumps import solve_with_ipopt_mumps
+    except ImportError:
+        allowed = "ipopt or snopt on this machine, which lacks the package ipyopt"
+        raise InvalidInput("solver", name, allowed) from None
+    return solve_with_ipopt_mumps
 
 
 class _Run:
@@ -162,13 +182,8 @@ class _Run:
     def _solve(self, x: np.ndarray, warm: bool) -> None:
         self.monitor.begin(self.program)
         started = time.monotonic()
-        options = self.options
-        if options.solver == "ipopt-mumps":
-            # ipyopt has wheels for Linux on x86-64 only; Drake's solvers run everywhere.
-            from drakegait.solvers.ipopt_mumps import solve_with_ipopt_mumps as solve_program
-        else:
-            from drakegait.solvers.drake import solve_with_drake as solve_program
-        self.solution = solve_program(self.program, x, options, self.monitor, warm)
+        solve_program = _solver(self.options.solver)
+        self.solution = solve_program(self.program, x, self.options, self.monitor, warm)
         self.solver_time += time.monotonic() - started
         self.iterations += self.solution.iterations
 
