@@ -142,7 +142,7 @@ def equations_of_motion(judged: Judged) -> list[CheckItem]:
 
 
 def foot_contact(judged: Judged) -> list[CheckItem]:
-    """Standing heel and toe against the footprints (item 9 of the paper's 3.3), and depth in the ground."""
+    """Standing feet against their prints (item 9 of the paper's 3.3), and depth in the ground."""
     study, points = judged.gait.study, judged.contact_points
     tolerance = study.tolerances.contact_tolerance
     rows = np.zeros((len(points), feet.NUM_ROWS))
@@ -201,7 +201,8 @@ def ground_forces(judged: Judged) -> list[CheckItem]:
     names = ("right foot", "left foot")
     return [
         judged.worst("friction_ratio_max", "friction used", slip, "", 1.0 + GRIP_SLACK, names),
-        judged.worst("free_moment_excess_Nm", "free moment beyond grip", twist, "N m", spare, names),
+        judged.worst("free_moment_excess_Nm", "free moment beyond grip", twist, "N m", spare,
+                     names),
         judged.worst("normal_force_min_N", "smallest vertical force", loaded, "N",
                      -LEAST_LOAD * judged.body_weight, feet.POINT_NAMES, largest=False),
     ]  # fmt: skip

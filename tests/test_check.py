@@ -149,8 +149,26 @@ def test_excitations_are_those_of_the_muscles(gait, report):
 
 def test_slippery_ground_is_used_more(gait, report):
     mu = gait.study.contact.friction
-    slippery = check(tolerant(gait, friction=mu / 4))
-    assert slippery.friction_ratio_max == pytest.approx(4.0 * report.friction_ratio_max)
+    exact = check(tolerant(gait, force_tolerance=0.01))
+    slippery = check(tolerant(gait, friction=mu / 4, force_tolerance=0.01))
+    assert slippery.friction_ratio_max == pytest.approx(4.0 * exact.friction_ratio_max)
+    usual = check(tolerant(gait, friction=mu / 4))
+    assert report.friction_ratio_max < usual.friction_ratio_max
+
+
+def test_horizontal_forces_within_twice_their_tolerance_are_no_slip(gait):
+    """|F_xy| / max(mu N, 2 eps_m): what the equations of motion leave open does not count."""
+    for tolerance in (0.01, 5.0, 60.0):
+        judged = Judged(tolerant(gait, force_tolerance=tolerance), 200)
+        force = judged.loads.ground_reactions
+        standing = np.stack(
+            [~np.isin(judged.phases, (6, 7)) & (force[:, 0] != 0.0).any(axis=1),
+             ~np.isin(judged.phases, (2, 3)) & (force[:, 1] != 0.0).any(axis=1)], axis=1,
+        )  # fmt: skip
+        held = np.maximum(judged.gait.study.contact.friction * force[..., 2], 2.0 * tolerance)
+        used = np.where(standing, np.hypot(force[..., 0], force[..., 1]) / held, -np.inf)
+        found = {item.name: item for item in ground_forces(judged)}["friction_ratio_max"]
+        assert found.value == pytest.approx(used.max())
 
 
 def test_a_free_moment_beyond_the_grip_is_one_more_unexplained_moment(gait):

@@ -221,8 +221,13 @@ def test_choices_and_options_add_up():
 
 
 def test_events_go_further_than_their_first_bounds_let_them():
-    """Slow walking needs longer double support; another round moves the bounds along."""
-    slow, rounds = STUDY.replace(speed=0.8), set()
+    """A reference that says too early a heel off: further rounds move the bounds along."""
+    walk = STUDY.reference_walk
+    shift = np.tile([0.0, 0.0, -0.1, 0.1], 2)
+    early = dataclasses.replace(
+        walk, phase_fractions=tuple(np.asarray(walk.phase_fractions) + shift)
+    )
+    slow, rounds = STUDY.replace(reference=early), set()
     found = solve(
         slow, refine=False, time_limit=60.0, report=lambda progress: rounds.add(progress.round)
     )

@@ -144,7 +144,8 @@ def _placement(formulation: Formulation) -> Block:
         np.array([_LENGTH, _LENGTH, _LENGTH, _LENGTH, _LENGTH]),
         bounds[:, 0],
         bounds[:, 1],
-        ["step length right", "step length left", "toe angle right", "toe angle left", "step width"],
+        ["step length right", "step length left", "toe angle right", "toe angle left",
+         "step width"],
     )
 
 

@@ -87,8 +87,9 @@ class Excitation(LocalRows):
         num = layout.num_muscles
         window = np.arange(width)
         two = np.arange(2)
-        own_rows = 2 * np.arange(num)[:, None, None] + two[:, None] + 0 * window
-        own_columns = layout.forces + np.arange(num)[:, None, None] * width + 0 * two[:, None] + window
+        muscle = np.arange(num)[:, None, None]
+        own_rows = 2 * muscle + two[:, None] + 0 * window
+        own_columns = layout.forces + muscle * width + 0 * two[:, None] + window
         spans = self._chain.muscle_of_span, self._chain.coordinate_of_span
         span_rows = 2 * spans[0][:, None, None] + two[:, None] + 0 * window
         span_columns = spans[1][:, None, None] * width + 0 * two[:, None] + window

@@ -200,7 +200,8 @@ class GaitProgram:
         self._distinct = len(unique) == len(keys)
         if self._distinct:
             # Entries need not be sorted; keeping them as computed saves a pass.
-            self.jacobian_rows, self.jacobian_columns = np.concatenate(rows), np.concatenate(columns)
+            self.jacobian_rows = np.concatenate(rows)
+            self.jacobian_columns = np.concatenate(columns)
         else:
             self.jacobian_rows = unique // self.num_variables
             self.jacobian_columns = unique % self.num_variables

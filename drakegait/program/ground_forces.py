@@ -70,7 +70,9 @@ class FreeMoment(DenseRows):
     """Grip left for twisting, both ways, per foot [10 N m]."""
 
     kind = "free moment"
-    row_names = ("foot_r turned left", "foot_r turned right", "foot_l turned left", "foot_l turned right")
+    row_names = tuple(
+        f"foot_{side} turned {way}" for side in ("r", "l") for way in ("left", "right")
+    )
     units = ("N m",) * 4
 
     def __init__(self, formulation: Formulation, points: ControlPoints):

@@ -41,7 +41,8 @@ class TimingRows:
         self.columns = unique % (design.num_variables + 1)
         self._keep = keep
         timing = self._timing
-        free = [(phase, k) for phase in self._phases for k in (1, 2) if timing.index[phase + k] >= 0]
+        ends = [(phase, k) for phase in self._phases for k in (1, 2)]
+        free = [(phase, k) for phase, k in ends if timing.index[phase + k] >= 0]
         self._curved = np.array(free, dtype=int).reshape(-1, 2)
         events = timing.index[self._curved.sum(axis=1)]
         self.curved_rows = np.maximum(events, timing.index[0])

@@ -13,8 +13,8 @@ _BALANCE = (
 _BY_LAW = {
     "equations of motion": _BALANCE,
     "least-squares contact forces": _BALANCE,
-    "foot contact": "the feet cannot reach their footprints: try a speed nearer to the reference or "
-    "a larger contact_tolerance",
+    "foot contact": "the feet cannot reach their footprints: try a speed nearer to the reference "
+    "or a larger contact_tolerance",
     "clearance": "the swing foot has no room: check joint limits and the reference",
     "friction": "the ground is too slippery for this walk: raise friction or lower the speed",
     "free moment": "the foot twists more than the ground holds: raise friction or patch_radius",

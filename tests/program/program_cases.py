@@ -36,15 +36,17 @@ def program(model: str, form: str = "lifted", **statements) -> GaitProgram:
 
 
 @functools.cache
-def guess(model: str, form: str = "lifted") -> np.ndarray:
+def guess(model: str, form: str = "lifted", **statements) -> np.ndarray:
     """Design vector of the reference walk."""
-    return guess_from_reference(program(model, form))
+    return guess_from_reference(program(model, form, **statements))
 
 
-def jiggled(model: str, form: str = "lifted", seed: int = 1, size: float = 0.1) -> np.ndarray:
+def jiggled(
+    model: str, form: str = "lifted", seed: int = 1, size: float = 0.1, **statements
+) -> np.ndarray:
     """A walk off the reference: nothing in it is zero, symmetric or at a bound by chance."""
-    design = program(model, form).design
-    x = guess(model, form)
+    design = program(model, form, **statements).design
+    x = guess(model, form, **statements)
     moved = x + size * np.random.default_rng(seed).uniform(-1.0, 1.0, x.size)
     return np.clip(moved, design.lower, design.upper)
 

@@ -107,6 +107,36 @@ def test_derivatives_agree_with_differences(kind, model):
     np.testing.assert_allclose(passive.forces(q, v)[1], passive.forces(q[1], v[1]), rtol=1e-12)
 
 
+@pytest.mark.parametrize("kind", coordinates.SKELETONS)
+@pytest.mark.parametrize("model", ["riener_edrich", "double_exponential"])
+def test_curvature_agrees_with_differences_of_the_derivatives(kind, model):
+    passive = PassiveJoints(kind, Subject(height=1.7), PassiveSettings(model=model, scale=1.4))
+    rng = np.random.default_rng(3)
+    n = len(coordinates.names(kind))
+    q = rng.normal(scale=0.6, size=(4, n))  # beyond the cap of the exponents too
+    weights = rng.normal(size=q.shape)
+    found = passive.curvature(q, weights)
+
+    def slope(q):
+        return np.einsum("...i,...ij->...j", weights, passive.derivatives(q, 0 * q)[0])
+
+    h = 1e-6
+    for i, e in enumerate(np.eye(n)):
+        change = (slope(q + h * e) - slope(q - h * e)) / (2 * h)
+        np.testing.assert_allclose(found[..., i], change, rtol=1e-6, atol=1e-4)
+    np.testing.assert_allclose(found, np.swapaxes(found, -1, -2), rtol=1e-12)
+    np.testing.assert_allclose(passive.curvature(q[1], weights[1]), found[1], rtol=1e-12)
+
+
+def test_beyond_the_cap_nothing_bends():
+    passive = PassiveJoints("spatial")
+    row = coordinates.position("spatial", "hip_adduction_r")
+    postures = [posture("spatial", hip_adduction=angle) for angle in (60.0, 80.0)]
+    bent = [passive.curvature(q, np.ones(16))[row, row] for q in postures]
+    assert abs(bent[0]) > 1e3
+    assert abs(bent[1]) < 1e-6
+
+
 def test_terms_grow_only_linearly_far_outside_the_range():
     passive = PassiveJoints("spatial")
     q = posture("spatial", knee_flexion=-120.0)
