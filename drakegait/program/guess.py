@@ -52,7 +52,6 @@ def _reference_values(program: GaitProgram) -> DesignValues:
     placement = reference.foot_placement
     samples = np.arange(8 * splines.num_intervals) / (8 * splines.num_intervals)
     coefficients = splines.fit(samples, reference.coordinate_values(samples).T)
-    num_muscles = len(formulation.walker.muscles.names)
     least = formulation.walker.muscle_functions.settings.min_force
     forces = np.repeat(
         least * formulation.walker.muscles.f_max[:, None], splines.num_intervals, axis=1
@@ -61,7 +60,6 @@ def _reference_values(program: GaitProgram) -> DesignValues:
         np.append(np.array(formulation.event_centres), 1.0)[: formulation.schedule.num_phases + 1]
     )
     multipliers = _reference_multipliers(program, reference.ground_reactions(instants))
-    assert forces.shape[0] == num_muscles
     return DesignValues(
         coefficients,
         forces,
@@ -95,6 +93,8 @@ def _fit_forces(program: GaitProgram, x: np.ndarray, keep_muscles: bool = False)
     forces = np.zeros(design.num_variables, dtype=bool)
     forces[design.offsets["forces"] : design.offsets["timing"]] = not keep_muscles
     forces[design.offsets["multipliers"] : design.offsets["residuals"]] = True
+    if not forces.any():  # projected multipliers follow from motion and muscles
+        return x
     rows = _motion_rows(program)
     entries = program.jacobian(x)
     matrix = scipy.sparse.csr_array(
@@ -115,7 +115,6 @@ def _fit_forces(program: GaitProgram, x: np.ndarray, keep_muscles: bool = False)
     problem.AddBoundingBoxConstraint(design.lower[forces], design.upper[forces], y)
     result = ClarabelSolver().Solve(problem)
     if result.is_success():
-        x = x.copy()
         x[forces] = np.clip(result.GetSolution(y), design.lower[forces], design.upper[forces])
     return _with_residuals(program, x)
 

@@ -61,7 +61,6 @@ class MetabolicCost(LocalCost):
         layout, width = points.layout, points.layout.width
         spanned = np.unique(self._chain.coordinate_of_span)
         window = np.arange(width)
-        self._spanned = spanned
         self._by_span = np.zeros((len(spanned), layout.num_muscles))
         for muscle, coordinate, arm in zip(
             self._chain.muscle_of_span,

@@ -191,6 +191,15 @@ def test_an_earlier_gait_is_its_own_guess(form):
     np.testing.assert_allclose(again, x, atol=1e-12)
 
 
+def test_without_lifted_forces_there_is_nothing_to_fit_on_other_control_points():
+    """An empty quadratic program once ended the process here."""
+    old, x = program("planar", "projected"), guess("planar", "projected")
+    new = variant(
+        "planar", interior_points=(2, 1, 3, 2, 2, 1, 3, 2), multipliers="projected"
+    )
+    np.testing.assert_allclose(guess_from_values(new, old.values(x)), x, atol=1e-12)
+
+
 def test_an_earlier_gait_keeps_its_motion_on_other_control_points():
     old, x = program("planar"), guess("planar")
     values = old.values(x)
