@@ -140,8 +140,7 @@ def solve_with_ipopt_mumps(
         x, _, code = run.problem(ipopt).solve(
             x, mult_g=multipliers[0], mult_x_L=multipliers[1], mult_x_U=multipliers[2]
         )
-        done = not settled.reached or settled.at_end or run.iteration >= options.max_iterations
-        if done or monitor.stop_reason is not None:
+        if not settled.reached or settled.at_end or monitor.stop_reason is not None:
             break
         run.before = run.iteration
         ipopt |= _RESTART | {"mu_init": settled.next_barrier()}
