@@ -248,7 +248,7 @@ def test_other_commands_refuse_likewise(capsys, monkeypatch, tmp_path, gait_file
 
 def request(**options) -> WalkRequest:
     """A request with the defaults of the command line."""
-    parameters = inspect.signature(cli.walk).parameters.values()
+    parameters = inspect.signature(cli.walk.walk).parameters.values()
     defaults = {p.name: p.default for p in parameters if p.name != "context"}
     return WalkRequest(**(defaults | options))
 

@@ -1,0 +1,3 @@
+from drakegait.cli import main
+
+main()
