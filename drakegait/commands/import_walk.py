@@ -1,0 +1,53 @@
+"""`drakegait import`: a person's measured walk becomes the reference of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from drakegait.commands.screen import console
+from drakegait.errors import BadFile, InvalidInput
+from drakegait.measured.imported import ImportedWalk, quality_path
+from drakegait.measured.walk import import_walk
+
+_SIDE = "PLATE=SIDE with side right or left, for example 'plate 1=right'"
+
+
+def import_files(
+    motion: str, forces: str, out: str, sides: Sequence[str] | None, **options: object
+) -> None:
+    """Import, save, and say what was found.
+
+    Raises:
+        BadFile, InvalidInput, UnknownName: in one sentence, what cannot be used.
+    """
+    target = Path(out).expanduser()
+    if target.suffix.lower() != ".nc":
+        raise InvalidInput("--output", out, "the name of a file that ends in .nc")
+    if not target.parent.is_dir():
+        raise BadFile(target.parent, "does not exist; make the folder first.")
+    walk = import_walk(motion, forces, sides=dict(_side(text) for text in sides or ()), **options)
+    walk.save(target)
+    _print(walk, target)
+
+
+def _side(text: str) -> tuple[str, str]:
+    name, equals, side = (part.strip() for part in text.partition("="))
+    if not equals or not name or side.lower() not in ("right", "left", "r", "l"):
+        raise InvalidInput("--side", text, _SIDE)
+    return name, side.lower()[0]
+
+
+def _print(walk: ImportedWalk, target: Path) -> None:
+    screen = console()
+    lines = [f"{name}: {text}" for name, text in walk.quality.facts.items()]
+    lines += [f"Note: {sentence}" for sentence in walk.warnings]
+    before = max(row["before_mm"] for row in walk.quality.contacts)
+    after = max(row["after_mm"] for row in walk.quality.contacts)
+    lines.append(
+        f"Feet on their prints: worst phase {before:.1f} mm before, {after:.1f} mm after the fit."
+    )
+    lines.append(f"Files: {target}, {quality_path(target)}.")
+    lines.append(f"Next: drakegait walk --reference {target}")
+    for line in lines:
+        screen.print(line, markup=False, soft_wrap=True)

@@ -1,0 +1,72 @@
+"""Which reader a file needs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from drakegait.errors import BadFile, UnknownName
+from drakegait.measured.body_angles import NAMES
+from drakegait.measured.column_map import ColumnMap, read_map
+from drakegait.measured.csv_columns import read_csv_table
+from drakegait.measured.force_records import ForceRecord, is_force_column, read_forces
+from drakegait.measured.notes import Notes
+from drakegait.measured.opensim_file import read_opensim
+from drakegait.measured.table import Table
+
+OPENSIM, CSV, C3D = (".mot", ".sto"), (".csv", ".txt", ".tsv"), (".c3d",)
+
+
+def read_motion_file(path: str | Path, columns: str | Path | None, notes: Notes) -> Table:
+    """The table of a motion file.
+
+    Raises:
+        BadFile: of a kind that holds no joint angles.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix in C3D:
+        raise BadFile(path, "holds markers, not joint angles: run inverse kinematics on it first "
+                      "(OpenSim or your laboratory's software) and give its .mot or .csv file as "
+                      "the motion; the C3D file itself serves as the file of forces.")  # fmt: skip
+    return _table(path, _map(columns), NAMES.__contains__, notes)
+
+
+def read_force_file(
+    path: str | Path, columns: str | Path | None, sides: Mapping[str, str], cutoff: float,
+    notes: Notes,
+) -> list[ForceRecord]:  # fmt: skip
+    """The force records of a file.
+
+    Raises:
+        BadFile: of an unknown kind, or without forces.
+    """
+    if Path(path).suffix.lower() in C3D:
+        from drakegait.measured.c3d_file import read_c3d
+
+        return read_c3d(path, sides=sides, axes=_map(columns).axes, cutoff=cutoff, notes=notes)
+    table = _table(path, _map(columns), is_force_column, notes)
+    return read_forces(replace(table, sides={**table.sides, **sides}), cutoff=cutoff, notes=notes)
+
+
+def _map(columns: str | Path | None) -> ColumnMap:
+    """What the user says about columns, all of which must be known."""
+    if columns is None:
+        return ColumnMap()
+    found = read_map(columns)
+    for name in found.columns:
+        if name not in (*NAMES, "time") and not is_force_column(name):
+            raise UnknownName("column of the map", name, (*NAMES, "time", "..._vx", "..._px"))
+    return found
+
+
+def _table(
+    path: str | Path, columns: ColumnMap, wanted: Callable[[str], bool], notes: Notes
+) -> Table:
+    suffix = Path(path).suffix.lower()
+    if suffix in OPENSIM:
+        return read_opensim(path, notes)
+    if suffix in CSV:
+        return read_csv_table(path, columns, wanted)
+    known = ", ".join((*OPENSIM, *CSV, *C3D))
+    raise BadFile(path, f"has the unknown suffix {suffix!r}; what can be read is {known}.")
