@@ -49,10 +49,10 @@ class Film:
     force: np.ndarray
 
     @classmethod
-    def of(cls, gait: Gait) -> Film:
-        """The film of a gait at about `FRAME_RATE`."""
+    def of(cls, gait: Gait, frames: int | None = None) -> Film:
+        """The film of a gait at about `FRAME_RATE`, or with `frames` in a stride."""
         stride_time = float(gait.values.stride_time)
-        count = max(8, round(FRAME_RATE * stride_time))
+        count = frames or max(8, round(FRAME_RATE * stride_time))
         data = gait.sample(count + 1).isel(time=slice(0, count))
         weight = gait.study.subject.mass * GRAVITY
         return cls(
@@ -99,50 +99,70 @@ class Film:
 def animate(film: Film, pieces: list[MusclePiece], strides: int, size: float) -> MeshcatAnimation:
     """The film played `strides` times in a row, each time a stride further on.
 
-    The root moves back at the mean speed of the walker, so that the view travels with it.
-
     Args:
         size: height of the subject over 1.80 m.
     """
-    animation = MeshcatAnimation(film.frame_rate)
+    animation = endless(film.frame_rate)
+    add_walker(animation, film, pieces, strides, size)
+    return animation
+
+
+def endless(frame_rate: float) -> MeshcatAnimation:
+    """An animation without frames that starts at once and repeats."""
+    animation = MeshcatAnimation(frame_rate)
     animation.set_loop_mode(MeshcatAnimation.LoopMode.kLoopRepeat)
     animation.set_repetitions(_FOR_EVER)
     animation.set_autoplay(True)
+    return animation
+
+
+def add_walker(
+    animation: MeshcatAnimation, film: Film, pieces: list[MusclePiece], strides: int, size: float,
+    root: str = scene.ROOT, aside: float = 0.0,
+) -> None:  # fmt: skip
+    """Add the frames of a walker, repeated `strides` times.
+
+    The root moves back at the mean speed of the walker, so that the view travels with it.
+
+    Args:
+        root: path of the walker.
+        aside: how far to the left it walks [m].
+    """
     ends = {piece: film.piece_ends(piece) for piece in pieces}
     for frame in range(strides * film.frames_per_stride + 1):
         stride, row = divmod(frame, film.frames_per_stride)
         advance = np.array([stride * film.stride_length, 0.0, 0.0])
-        view = RigidTransform([-float(film.viewer(frame)), 0.0, 0.0])
-        animation.SetTransform(frame, scene.ROOT, view)
+        view = RigidTransform([-float(film.viewer(frame)), aside, 0.0])
+        animation.SetTransform(frame, root, view)
         for segment, (rotation, origin) in film.poses.items():
             pose = RigidTransform(RotationMatrix(rotation[row]), origin[row] + advance)
-            animation.SetTransform(frame, scene.body_path(segment), pose)
+            animation.SetTransform(frame, scene.body_path(segment, root), pose)
         for piece, points in ends.items():
-            _move_piece(animation, frame, piece, points[row] + advance)
+            _move_piece(animation, frame, piece, points[row] + advance, root)
             if piece.belly:
                 colour = film.colour(piece.muscle)[row]
-                path = f"{scene.piece_path(piece)}/shape/<object>"
+                path = f"{scene.piece_path(piece, root)}/shape/<object>"
                 animation.SetProperty(frame, path, "material.color", list(linear_light(colour)))
-        _move_arrows(animation, frame, film, row, advance, size)
-    return animation
+        _move_arrows(animation, frame, film, row, advance, size, root)
 
 
 def _move_piece(
-    animation: MeshcatAnimation, frame: int, piece: MusclePiece, points: np.ndarray
+    animation: MeshcatAnimation, frame: int, piece: MusclePiece, points: np.ndarray, root: str
 ) -> None:
     if piece.segments[0] == piece.segments[1]:
         return  # it is fixed to its segment
     pose, length = scene.piece_pose(points)
-    path = scene.piece_path(piece)
+    path = scene.piece_path(piece, root)
     animation.SetTransform(frame, path, pose)
     animation.SetProperty(frame, f"{path}/shape", "scale", [1.0, 1.0, length])
 
 
 def _move_arrows(
-    animation: MeshcatAnimation, frame: int, film: Film, row: int, advance: np.ndarray, size: float
-) -> None:
+    animation: MeshcatAnimation, frame: int, film: Film, row: int, advance: np.ndarray,
+    size: float, root: str,
+) -> None:  # fmt: skip
     for foot, side in enumerate(("right", "left")):
-        path, loaded = scene.arrow_path(side), bool(film.loaded[row, foot])
+        path, loaded = scene.arrow_path(side, root), bool(film.loaded[row, foot])
         animation.SetProperty(frame, path, "visible", loaded)
         if not loaded:
             continue

@@ -37,7 +37,7 @@ def excitations(all_curves: Sequence[GaitCurves]) -> Figure:
         all_curves: the gait, then those it is compared with.
     """
     first = all_curves[0]
-    groups = [name[:-2] for name in first.data.muscle.values if name.endswith("_r")]
+    groups = list(dict.fromkeys(name[:-2] for name in first.data.muscle.values))
     columns = 4
     rows = -(-len(groups) // columns)
     figure, grid = style.panel_figure(
@@ -73,10 +73,10 @@ def _draw_group(axes: Axes, all_curves: Sequence[GaitCurves], group: str) -> Non
         )  # fmt: skip
     for side in SIDES:
         name, colour = f"{group}_{side[0]}", style.SIDE_COLOURS[side]
-        percent, activation = all_curves[0].own_cycle(
-            side, all_curves[0].muscle(name, "activation")
-        )
-        axes.fill_between(percent, activation, color=colour, alpha=0.14, lw=0, zorder=2)
+        activation = all_curves[0].muscle(name, "activation")
+        if activation is not None:  # a leg with a prosthesis has fewer muscles
+            percent, activation = all_curves[0].own_cycle(side, activation)
+            axes.fill_between(percent, activation, color=colour, alpha=0.14, lw=0, zorder=2)
         for number, curves in enumerate(all_curves):
             excitation = curves.muscle(name)
             if excitation is not None:

@@ -82,7 +82,7 @@ def stick_figure(all_curves: Sequence[GaitCurves]) -> Figure:
         """Axes whose lower left corner and size are given in inches."""
         return figure.add_axes((x / width, y / height, wide / width, high / height))
 
-    _draw_events(panel(0.3, height - 3.10, 10.2, 2.25), curves)
+    draw_events(panel(0.3, height - 3.10, 10.2, 2.25), curves)
     stride = panel(0.3 if spatial else 1.9, 1.75 if spatial else 0.35, 7.0, 4.35)
     _draw_strobe(stride, curves)
     if spatial:
@@ -91,7 +91,7 @@ def stick_figure(all_curves: Sequence[GaitCurves]) -> Figure:
     return figure
 
 
-def _draw_events(axes: Axes, curves: GaitCurves) -> None:
+def draw_events(axes: Axes, curves: GaitCurves) -> None:
     """The walker at each event, side by side, with the forces on its feet."""
     gait = curves.gait
     size = gait.study.subject.height / 1.80

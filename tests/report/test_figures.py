@@ -203,7 +203,7 @@ def test_footprints_lie_where_the_program_puts_them():
 
 
 def test_others_are_dashed_and_named_by_their_difference():
-    gait = reference_gait("planar-symmetric")
+    gait = reference_gait("planar")
     heavy = dataclasses.replace(gait, study=gait.study.with_added_mass("foot_r", 2.0))
     both = curves_of(gait, (heavy,))
     assert [item.label for item in both] == ["no added mass", "2 kg on foot_r"]
