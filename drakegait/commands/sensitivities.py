@@ -1,0 +1,59 @@
+"""`drakegait sensitivities`: compute, print the largest, save all."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from rich.table import Table
+
+from drakegait.commands.gait_files import FIGURES_FOLDER, gait_path, load_gait
+from drakegait.commands.screen import console
+from drakegait.errors import BadFile, InvalidInput
+from drakegait.sensitivities import Sensitivities
+
+CSV_FILE = "sensitivities.csv"
+
+
+def print_sensitivities(name: str, folder: str | None, count: int) -> None:
+    """Print the `count` largest answers and write table and picture."""
+    if not 1 <= count <= 60:
+        raise InvalidInput("--count", count, "from 1 to 60")
+    gait = load_gait(name)
+    target = gait_path(name).parent / FIGURES_FOLDER if folder is None else Path(folder)
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadFile(target, f"cannot be made ({error.strerror or error}).") from None
+    screen = console()
+    with screen.status("differentiating ..."):
+        answers = gait.sensitivities()
+    screen.print(
+        f"f = {answers.cost:.4g}, cost of transport {answers.energy:.1f} J/m; what is left of the "
+        f"optimality conditions: {answers.stationarity:.1g} of the gradient.",
+        markup=False, soft_wrap=True,
+    )  # fmt: skip
+    screen.print(_table(answers, count))
+    answers.save_csv(target / CSV_FILE)
+    answers.plot(target, count)
+    screen.print(
+        f"Files in {target}: {CSV_FILE}, sensitivities.svg, sensitivities.png.", markup=False,
+        soft_wrap=True,
+    )  # fmt: skip
+
+
+def _table(answers: Sensitivities, count: int) -> Table:
+    table = Table(title="Answers to a step of each parameter, to first order", box=None)
+    table.add_column("parameter")
+    for heading in ("value", "step", "unit", "f [%]", "E [J/m]", "df/dp", "dE/dp"):
+        table.add_column(heading, justify="left" if heading == "unit" else "right")
+    for entry in answers.entries[:count]:
+        unknown = math.isnan(entry.energy)
+        table.add_row(
+            entry.parameter, f"{entry.value:.4g}", f"{entry.step:.2g}", entry.unit,
+            f"{100.0 * entry.cost_change / answers.cost:+.2f}",
+            "" if unknown else f"{entry.energy_change:+.2f}",
+            f"{entry.cost:+.4g}",
+            "" if unknown else f"{entry.energy:+.4g}",
+        )  # fmt: skip
+    return table
