@@ -124,7 +124,8 @@ def _read_ipopt(
         stopped = _stopped(start, monitor, f"IPOPT return code {code}")
         return Solution(stopped.x, status, iterations, stopped.detail)
     rows = np.zeros(len(drake.rows))
-    multipliers = np.asarray(details.lambda_val)
+    # Copies: what Drake hands out is memory of `result`.
+    multipliers = np.array(details.lambda_val)
     if multipliers.size == rows.size:
         rows[drake.rows] = multipliers
     return Solution(
@@ -133,8 +134,8 @@ def _read_ipopt(
         iterations,
         f"IPOPT return code {code}",
         rows if multipliers.size == rows.size else None,
-        np.asarray(details.z_L),
-        np.asarray(details.z_U),
+        np.array(details.z_L),
+        np.array(details.z_U),
     )
 
 
@@ -152,7 +153,14 @@ def _read_snopt(
     found = re.search(r"No\. of major iterations\s+(\d+)", log)
     iterations = int(found.group(1)) if found else monitor.iteration
     x = result.GetSolution(drake.variables)
-    usable = result.get_solution_result() == SolutionResult.kSolutionFound
-    if not usable and monitor.best is not None:
-        x = monitor.best
-    return Solution(x, status, iterations, f"SNOPT info {code}")
+    detail = f"SNOPT info {code}"
+    if result.get_solution_result() != SolutionResult.kSolutionFound:
+        best = x if monitor.best is None else monitor.best
+        return Solution(best, status, iterations, detail)
+    # SNOPT's signs are those of grad f = J^T multipliers + reduced costs; the first row is f.
+    details = result.get_solver_details()
+    reduced, rows = np.array(details.xmul), np.zeros(len(drake.rows))
+    rows[drake.rows] = -np.array(details.Fmul)[1 : 1 + len(rows)]
+    return Solution(
+        x, status, iterations, detail, rows, np.maximum(reduced, 0.0), np.maximum(-reduced, 0.0)
+    )

@@ -63,7 +63,8 @@ class _Run:
         self.iteration = 0
         self.before = 0  # iterations of the restarts before
         self.hessian: LagrangianHessian | None = None
-        if options.second_derivatives == "exact" and program.formulation.lifted:
+        analytic = options.derivatives == "analytic" and program.formulation.lifted
+        if options.second_derivatives == "exact" and analytic:
             self.hessian = LagrangianHessian(program)
 
     def problem(self, ipopt: dict[str, Any]) -> ipyopt.Problem:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 STATUSES = (
@@ -13,6 +14,29 @@ STATUSES = (
     "infeasible",
     "failed",
 )
+
+
+@dataclass(frozen=True)
+class StartRecord:
+    """How the solve from one of several starts ended.
+
+    Attributes:
+        start: what it started from, in words.
+        status: one of `STATUSES`.
+        cost: f of eq. (13) [-].
+        energy: exact cost of transport [J/m].
+        iterations: of the solver, all rounds together.
+        wall_time: seconds, all included.
+        phase_durations: t_ph (8,) [s].
+    """
+
+    start: str
+    status: str
+    cost: float
+    energy: float
+    iterations: int
+    wall_time: float
+    phase_durations: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -30,6 +54,7 @@ class Outcome:
         worst: rows that hold least, in gait terms; empty if all hold.
         advice: what to try next; empty if converged.
         refinements: one sentence for each round of added control points.
+        starts: how each of several starts ended, this one included; empty if there was one.
     """
 
     solver: str
@@ -44,6 +69,13 @@ class Outcome:
     worst: tuple[str, ...] = ()
     advice: str = ""
     refinements: tuple[str, ...] = ()
+    starts: tuple[StartRecord, ...] = ()
+
+    @property
+    def spread(self) -> float:
+        """(largest - least) / least f of the starts that converged; nan for less than two."""
+        costs = [record.cost for record in self.starts if record.status == "converged"]
+        return (max(costs) - min(costs)) / min(costs) if len(costs) > 1 else math.nan
 
     @property
     def converged(self) -> bool:

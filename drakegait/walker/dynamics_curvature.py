@@ -59,6 +59,7 @@ class DynamicsCurvature:
 
     def __init__(self, skeleton: Skeleton):
         self._function, self._places = _build(skeleton)
+        self._mapped: dict[int, casadi.Function] = {}
 
     def evaluate(
         self,
@@ -80,19 +81,25 @@ class DynamicsCurvature:
         return MotionCurvature(**blocks)
 
     def _call(self, inputs: np.ndarray) -> np.ndarray:
-        out = np.empty((len(inputs), self._function.nnz_out(0)))
-        buffer, run = self._function.buffer()
-        for row, result in zip(np.ascontiguousarray(inputs), out, strict=True):
-            buffer.set_arg(0, memoryview(row))
-            buffer.set_res(0, memoryview(result))
-            run()
+        """The compiled function at all instants, shared out to two threads."""
+        num = len(inputs)
+        if num not in self._mapped:
+            self._mapped[num] = self._function.map(num, "thread", min(2, num))
+        out = np.empty((num, self._function.nnz_out(0)))
+        buffer, run = self._mapped[num].buffer()
+        inputs = np.ascontiguousarray(inputs)
+        buffer.set_arg(0, memoryview(inputs))
+        buffer.set_res(0, memoryview(out))
+        run()
         return out
 
 
 def _build(skeleton: Skeleton) -> tuple[casadi.Function, dict[str, tuple]]:
     n = skeleton.num_coordinates
     q, v, a, w, e = (casadi.SX.sym(name, n) for name in "qvawe")
-    multipliers, nu, rho = (casadi.SX.sym(name, feet.NUM_ROWS) for name in ("l", "nu", "rho"))
+    num = feet.NUM_ROWS_WITH_TORQUES if skeleton.toe_torque else feet.NUM_ROWS
+    multipliers, nu = (casadi.SX.sym(name, num) for name in ("l", "nu"))
+    rho = casadi.SX.sym("rho", feet.NUM_ROWS)
     links = _links(skeleton, q, v, a, (w, e))
     total = _virtual_power(skeleton, links)
     for foot, side in enumerate("rl"):
@@ -105,6 +112,10 @@ def _build(skeleton: Skeleton) -> tuple[casadi.Function, dict[str, tuple]]:
         total += casadi.dot(_row_velocities(link, points, 0), -multipliers[rows])
         total += casadi.dot(_row_velocities(link, points, 1), nu[rows])
         total += casadi.dot(_row_positions(link, points), rho[rows])
+        if skeleton.toe_torque:
+            rows = slice(feet.ROLL_ROWS[foot], feet.PITCH_ROWS[foot] + 1)
+            total += casadi.dot(_tilt_velocities(link, 0), -multipliers[rows])
+            total += casadi.dot(_tilt_velocities(link, 1), nu[rows])
     by_q = casadi.gradient(total, q)
     blocks = {
         "qq": casadi.jacobian(by_q, q),
@@ -231,6 +242,11 @@ def _row_velocities(link: _Link, points: list[np.ndarray], which: int) -> casadi
     angular, linear = link.virtual[which]
     velocities = [link.rotation @ (linear + casadi.cross(angular, point)) for point in points]
     return casadi.vertcat(*velocities, (link.rotation @ angular)[2])
+
+
+def _tilt_velocities(link: _Link, which: int) -> casadi.SX:
+    """Rotations about x and y at the virtual velocities number `which` (2,)."""
+    return (link.rotation @ link.virtual[which][0])[:2]
 
 
 def _row_positions(link: _Link, points: list[np.ndarray]) -> casadi.SX:

@@ -1,0 +1,341 @@
+"""A primal-dual interior-point method on the condensed system.
+
+    min f(x) - mu sum log(slack)   s.t.  c_E(x) = 0,  g(x) - s = 0
+
+for a falling sequence of barrier parameters mu; line search with a filter, second-order
+corrections, multiples of the identity added to K where it is not positive definite.
+The algorithm is that of IPOPT (Waechter & Biegler 2006, equation numbers below) without a
+restoration phase: where no step is acceptable the method says so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from drakegait.program.gait_program import GaitProgram
+from drakegait.solvers.condensed.filter import Filter
+from drakegait.solvers.condensed.system import CondensedSystem
+
+_TAU = 0.99  # smallest fraction to the boundary (8)
+_PUSH = 1e-2  # of a range, between a start and its bounds (section 3.6)
+_KAPPA_EPS, _KAPPA_MU, _THETA_MU = 10.0, 0.2, 1.5  # barrier problem, (7)
+_KAPPA_SIGMA = 1e10  # (16)
+_SCALE_MAX = 100.0  # s_max of (5)
+_CORRECTIONS, _CORRECTED = 4, 0.99  # second-order corrections (section 2.4)
+_SHIFTS = 1e-4, 1e-20, 1e40  # first, smallest, largest multiple of the identity (section 3.1)
+_SHIFT_UP, _SHIFT_UP_FIRST, _SHIFT_DOWN = 8.0, 100.0, 1.0 / 3.0
+
+
+@dataclass
+class Multipliers:
+    """Dual unknowns: of all rows, and of lower and upper bounds of x and slacks."""
+
+    rows: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Scaled violations of the KKT conditions, (5), (6)."""
+
+    dual: float
+    primal: float
+    complementarity: float
+
+    @property
+    def worst(self) -> float:
+        """E_mu."""
+        return max(self.dual, self.primal, self.complementarity)
+
+
+class InteriorPoint:
+    """The iteration; call `step` until `converged`.
+
+    Args:
+        program, system: what is solved.
+        x: start.
+        barrier: first mu.
+        last_barrier: smallest mu.
+        multipliers: known from an earlier solve; default none.
+        push: least distance of the start from its bounds, relative.
+    """
+
+    def __init__(
+        self,
+        program: GaitProgram,
+        system: CondensedSystem,
+        x: np.ndarray,
+        barrier: float,
+        last_barrier: float,
+        multipliers: Multipliers | None = None,
+        push: float = _PUSH,
+    ):
+        self.program, self.system = program, system
+        self._inequality = np.flatnonzero(~system.equality)
+        self._target = np.where(system.equality, program.lower, 0.0)
+        self._size = program.num_variables
+        self._low = np.concatenate([program.design.lower, program.lower[self._inequality]])
+        self._high = np.concatenate([program.design.upper, program.upper[self._inequality]])
+        self._has_low, self._has_high = np.isfinite(self._low), np.isfinite(self._high)
+        x = self._inside(x, self._low[: self._size], self._high[: self._size], push)
+        rows = program.rows(x)
+        slacks = self._inside(
+            rows[self._inequality], self._low[self._size :], self._high[self._size :], push
+        )
+        self.w = np.concatenate([x, slacks])
+        self.barrier, self._last_barrier = barrier, last_barrier
+        self.shift = 0.0
+        self.multipliers = multipliers or self._first_multipliers()
+        self._evaluate()
+        self._filter = Filter(np.abs(self._primal).sum())
+
+    @staticmethod
+    def _inside(x: np.ndarray, low: np.ndarray, high: np.ndarray, push: float) -> np.ndarray:
+        """`x` moved into the interior of its bounds (section 3.6)."""
+        with np.errstate(invalid="ignore"):
+            below = np.minimum(push * np.maximum(1.0, np.abs(low)), push * (high - low))
+            above = np.minimum(push * np.maximum(1.0, np.abs(high)), push * (high - low))
+            x = np.where(np.isfinite(low), np.maximum(x, low + below), x)
+            return np.where(np.isfinite(high), np.minimum(x, high - above), x)
+
+    def _first_multipliers(self) -> Multipliers:
+        low, high = self._gaps(self.w)
+        return Multipliers(
+            np.zeros(self.program.num_constraints), self.barrier / low, self.barrier / high
+        )
+
+    def _gaps(self, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Distances to the bounds, infinite where there is none."""
+        return w - self._low, self._high - w
+
+    # Evaluation --------------------------------------------------------------------------
+
+    @property
+    def x(self) -> np.ndarray:
+        """The unknowns of the program."""
+        return self.w[: self._size]
+
+    @property
+    def bound_multipliers(self) -> tuple[np.ndarray, np.ndarray]:
+        """Multipliers of the lower and upper bounds of x."""
+        z = self.multipliers
+        return z.lower[: self._size].copy(), z.upper[: self._size].copy()
+
+    def _primal_of(self, w: np.ndarray) -> np.ndarray:
+        """c_E and g - s at the rows (num_constraints,)."""
+        rows = self.program.rows(w[: self._size]) - self._target
+        rows[self._inequality] -= w[self._size :]
+        return rows
+
+    def _barrier_cost(self, w: np.ndarray, cost: float) -> float:
+        low, high = self._gaps(w)
+        logs = np.log(low[self._has_low]).sum() + np.log(high[self._has_high]).sum()
+        return cost - self.barrier * logs
+
+    def _evaluate(self) -> None:
+        x = self.x
+        self.cost = self.program.cost(x)
+        self._primal = self._primal_of(self.w)
+        self._gradient = self.program.gradient(x)
+        self._jacobian = self.system.jacobian(x)
+
+    @property
+    def violation(self) -> float:
+        """Largest violation of a row that ignores slacks' help, scaled."""
+        return float(np.abs(self._primal).max())
+
+    def errors(self, barrier: float) -> Errors:
+        """The scaled KKT errors for a barrier parameter (0: of the program itself)."""
+        y, low_y, high_y = self.multipliers.rows, self.multipliers.lower, self.multipliers.upper
+        dual = self._gradient + self._jacobian.T @ y
+        dual = np.concatenate([dual, -y[self._inequality]]) - low_y + high_y
+        low, high = self._gaps(self.w)
+        products = np.concatenate(
+            [
+                low_y[self._has_low] * low[self._has_low],
+                high_y[self._has_high] * high[self._has_high],
+            ]
+        )
+        of_bounds = low_y.sum() + high_y.sum()
+        count = len(products)
+        scale_d = max(_SCALE_MAX, (np.abs(y).sum() + of_bounds) / (len(y) + count)) / _SCALE_MAX
+        scale_c = max(_SCALE_MAX, of_bounds / count) / _SCALE_MAX
+        return Errors(
+            float(np.abs(dual).max() / scale_d),
+            float(np.abs(self._primal).max()),
+            float(np.abs(products - barrier).max() / scale_c),
+        )
+
+    # Iteration ---------------------------------------------------------------------------
+
+    def lower_barrier(self, factor: float | None = None) -> None:
+        """Go on to the next barrier problem, (7)."""
+        if factor is None:
+            smaller = min(_KAPPA_MU * self.barrier, self.barrier**_THETA_MU)
+        else:
+            smaller = factor * self.barrier
+        self.barrier = max(self._last_barrier, smaller)
+        self._filter.clear()
+
+    @property
+    def at_last_barrier(self) -> bool:
+        """Whether the barrier parameter will fall no more."""
+        return self.barrier <= self._last_barrier
+
+    def solved_barrier_problem(self) -> bool:
+        """Whether the error is small enough for a smaller barrier parameter."""
+        return self.errors(self.barrier).worst <= _KAPPA_EPS * self.barrier
+
+    def step(self) -> bool:
+        """One iteration; False if no acceptable step was found."""
+        low, high = self._gaps(self.w)
+        z = self.multipliers
+        stiffness = z.lower / low + z.upper / high
+        by_row = np.zeros(self.program.num_constraints)
+        by_row[self._inequality] = stiffness[self._size :]
+        self.system.linearise(
+            self.x, z.rows, by_row, stiffness[: self._size], self._jacobian
+        )
+        if not self._factor(0.0):
+            return False
+        while True:
+            push = self.barrier / high - self.barrier / low  # the barrier's gradient
+            direction = self._direction(self._primal, stiffness, push)
+            if self._search(direction, stiffness, push):
+                return True
+            if self.shift > 1e4 or not self._factor(max(8.0 * self.shift, 1e-2)):
+                return False
+
+    def _factor(self, shift: float) -> bool:
+        """Factorise with the smallest multiple of the identity, at least `shift`, that serves."""
+        first, smallest, largest = _SHIFTS
+        last = self.shift
+        up = _SHIFT_UP if last > 0.0 else _SHIFT_UP_FIRST
+        if self.system.factor(shift):
+            self.used_shift = shift
+            self.shift = shift if shift > 0.0 else last
+            return True
+        shift = max(shift, first if last == 0.0 else max(smallest, _SHIFT_DOWN * last))
+        while shift <= largest:
+            if self.system.factor(shift):
+                self.shift = self.used_shift = shift
+                return True
+            shift *= up
+        return False
+
+    def _direction(
+        self, primal: np.ndarray, stiffness: np.ndarray, push: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's step of (x, s) and of the rows' multipliers."""
+        y, size, rows = self.multipliers.rows, self._size, self._inequality
+        slack_stiffness = stiffness[size:]
+        rest = y[rows] - push[size:]
+        weights = np.zeros(len(y))
+        weights[rows] = slack_stiffness * primal[rows] - rest
+        b = -(self._gradient + self._jacobian.T @ (y + weights) + push[:size])
+        dx, dy = self.system.solve(b, primal)
+        ds = (self._jacobian @ dx)[rows] + primal[rows]
+        dy[rows] = slack_stiffness * ds - rest
+        return np.concatenate([dx, ds]), dy
+
+    def _search(
+        self,
+        direction: tuple[np.ndarray, np.ndarray],
+        stiffness: np.ndarray,
+        push: np.ndarray,
+    ) -> bool:
+        """Backtracking line search; moves if a step is accepted."""
+        dw, dy = direction
+        fraction = max(_TAU, 1.0 - self.barrier)
+        longest = self._reach(self.w, dw, fraction)
+        theta = np.abs(self._primal).sum()
+        phi = self._barrier_cost(self.w, self.cost)
+        slope = float(self._gradient @ dw[: self._size] + push @ dw)
+        smallest = self._filter.smallest_step(theta, slope)
+        step, first = longest, True
+        while step >= max(smallest, 1e-8):
+            trial = self.w + step * dw
+            measures, primal = self._measure(trial)
+            if self._filter.accepts(theta, phi, measures, slope, step):
+                self._move(trial, dw, dy, step)
+                return True
+            worse = first and theta <= measures[0] < np.inf
+            if worse and self._correct(primal, stiffness, push, theta, phi, slope, step):
+                return True
+            first = False
+            step *= 0.5
+        return False
+
+    def _correct(
+        self,
+        primal: np.ndarray,
+        stiffness: np.ndarray,
+        push: np.ndarray,
+        theta: float,
+        phi: float,
+        slope: float,
+        step: float,
+    ) -> bool:
+        """Second-order corrections of the longest step."""
+        total = step * self._primal + primal
+        before = np.inf
+        fraction = max(_TAU, 1.0 - self.barrier)
+        for _ in range(_CORRECTIONS):
+            dw, dy = self._direction(total, stiffness, push)
+            longest = self._reach(self.w, dw, fraction)
+            trial = self.w + longest * dw
+            measures, primal = self._measure(trial)
+            if self._filter.accepts(theta, phi, measures, slope, step):
+                self._move(trial, dw, dy, longest)
+                return True
+            if not measures[0] <= _CORRECTED * before:
+                return False
+            before, total = measures[0], longest * total + primal
+        return False
+
+    def _measure(self, w: np.ndarray) -> tuple[tuple[float, float], np.ndarray]:
+        """Violation and barrier cost at `w`, and the violated rows."""
+        primal = self._primal_of(w)
+        theta = float(np.abs(primal).sum())
+        if not np.isfinite(theta):
+            return (np.inf, np.inf), primal
+        cost = self._barrier_cost(w, self.program.cost(w[: self._size]))
+        return (theta, cost if np.isfinite(cost) else np.inf), primal
+
+    def _reach(self, w: np.ndarray, dw: np.ndarray, fraction: float) -> float:
+        """The longest step, at most 1, that keeps a part of every distance to a bound."""
+        low, high = self._gaps(w)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            down = np.where(dw < 0.0, -fraction * low / dw, np.inf).min()
+            up = np.where(dw > 0.0, fraction * high / dw, np.inf).min()
+        return float(min(1.0, down, up))
+
+    def _move(self, w: np.ndarray, dw: np.ndarray, dy: np.ndarray, step: float) -> None:
+        """Accept `w`; the multipliers follow."""
+        z, barrier = self.multipliers, self.barrier
+        low, high = self._gaps(self.w)
+        d_low = barrier / low - z.lower - z.lower / low * dw
+        d_high = barrier / high - z.upper + z.upper / high * dw
+        fraction = max(_TAU, 1.0 - barrier)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            longest = min(
+                1.0,
+                np.where(d_low < 0.0, -fraction * z.lower / d_low, np.inf).min(),
+                np.where(d_high < 0.0, -fraction * z.upper / d_high, np.inf).min(),
+            )
+        self.w = w
+        self.dual_step, self.primal_step = longest, step
+        new_low, new_high = self._gaps(w)
+
+        def guarded(value: np.ndarray, gap: np.ndarray) -> np.ndarray:
+            return np.clip(value, barrier / (_KAPPA_SIGMA * gap), _KAPPA_SIGMA * barrier / gap)
+
+        self.multipliers = Multipliers(
+            z.rows + step * dy,
+            guarded(z.lower + longest * d_low, new_low),
+            guarded(z.upper + longest * d_high, new_high),
+        )
+        self._evaluate()
