@@ -22,10 +22,12 @@ if TYPE_CHECKING:
     from drakegait.gait import Gait
     from drakegait.reference.reference import Reference
     from drakegait.replay import replay
+    from drakegait.report.compare import compare
     from drakegait.report.figures import plot
     from drakegait.solve import solve
     from drakegait.solvers.options import SolverOptions
     from drakegait.study import GaitStudy
+    from drakegait.sweep.run import sweep
     from drakegait.walker.subject import AddedMass, Subject
 
 __all__ = [
@@ -36,9 +38,11 @@ __all__ = [
     "SolverOptions",
     "Subject",
     "check",
+    "compare",
     "plot",
     "replay",
     "solve",
+    "sweep",
 ]
 
 _HOMES = {
@@ -49,9 +53,11 @@ _HOMES = {
     "SolverOptions": "drakegait.solvers.options",
     "Subject": "drakegait.walker.subject",
     "check": "drakegait.check",
+    "compare": "drakegait.report.compare",
     "plot": "drakegait.report.figures",
     "replay": "drakegait.replay",
     "solve": "drakegait.solve",
+    "sweep": "drakegait.sweep",
 }
 
 
@@ -67,8 +73,8 @@ def _version() -> str:
 class _Package(types.ModuleType):
     """Loads public names late, and keeps `solve` the function when its file is imported.
 
-    Python binds an imported file to its name in the package; for `check`, `replay` and `solve`
-    that would hide the function of the same name, depending on who imported what before.
+    Python binds an imported file to its name in the package; for `check`, `replay`, `solve` and
+    `sweep` that would hide the function of the same name, depending on who imported what before.
     """
 
     def __setattr__(self, name: str, value: Any) -> None:

@@ -20,6 +20,7 @@ import numpy as np
 from drakegait.errors import InvalidInput, UnknownName
 from drakegait.loads import muscle_inputs
 from drakegait.motion import Motion
+from drakegait.program.kkt import KktMultipliers
 from drakegait.solvers.outcome import Outcome
 from drakegait.study import GaitStudy
 from drakegait.transcription.design_vector import DesignValues
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from drakegait.check import CheckReport
+    from drakegait.sensitivities import Sensitivities
 
 ENERGY_INSTANTS = 1000
 
@@ -61,6 +63,7 @@ class Gait:
         cost: `total` f of eq. (13) and its weighted parts as the solver saw them (smoothed
             energy); empty for a gait that no solver has judged.
         report: the result of `check`, if it was made.
+        kkt: multipliers of the program's rows and bounds, if a solver found an optimum.
 
     Raises:
         InvalidInput: if the arrays in `values` do not belong to `study`.
@@ -71,6 +74,7 @@ class Gait:
     outcome: Outcome
     cost: Mapping[str, float]
     report: CheckReport | None = None
+    kkt: KktMultipliers | None = None
 
     def __post_init__(self) -> None:
         intervals = self.study.nodes - 1
@@ -80,7 +84,7 @@ class Gait:
             "stride_time": (),
             "events": (feet.NUM_PHASES,),
             "placement": (5,),
-            "multipliers": (len(self.values.multipliers), feet.NUM_ROWS),
+            "multipliers": (len(self.values.multipliers), self._contact_rows),
         }
         for name, shape in sizes.items():
             value = np.asarray(getattr(self.values, name))
@@ -88,6 +92,11 @@ class Gait:
                 raise InvalidInput(f"shape of {name}", value.shape, f"{shape} for this study")
         if not self.values.stride_time > 0.0:
             raise InvalidInput("stride_time", self.values.stride_time, "above 0 [s]")
+
+    @property
+    def _contact_rows(self) -> int:
+        torques = self.study.contact.toe_torque
+        return feet.NUM_ROWS_WITH_TORQUES if torques else feet.NUM_ROWS
 
     # Names and numbers -------------------------------------------------------------------
 
@@ -231,7 +240,18 @@ class Gait:
             self.outcome, status="failed", message="Nodal values were set by hand.",
             worst=(), advice="Use it as the guess of a solve.",
         )  # fmt: skip
-        return dataclasses.replace(self, values=edited, outcome=outcome, cost={}, report=None)
+        return dataclasses.replace(self, values=edited, outcome=outcome, cost={}, report=None,
+                                   kkt=None)  # fmt: skip
+
+    def sensitivities(self) -> Sensitivities:
+        """What every number of the study does to the optimum, see `drakegait.sensitivities`.
+
+        Raises:
+            InvalidInput: no solver has found this gait to be an optimum.
+        """
+        from drakegait.sensitivities import sensitivities
+
+        return sensitivities(self)
 
     # Files -------------------------------------------------------------------------------
 

@@ -2,8 +2,9 @@
 
 The root holds the sampled arrays with their units, for any program that reads netCDF (open it
 with `xarray.open_dataset`), and the study, the outcome and the check as JSON in its attributes.
-The group `design` holds the unknowns from which everything is computed anew on loading; the group
-`reference` the walk to compare with, if it is not the embedded one.
+The group `design` holds the unknowns from which everything is computed anew on loading, the group
+`kkt` the multipliers of an optimum in the solver's scaled variables and rows; the group `reference`
+the walk to compare with, if it is not the embedded one.
 """
 
 from __future__ import annotations
@@ -12,24 +13,19 @@ import dataclasses
 import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from drakegait.check import CheckReport
 from drakegait.errors import BadFile, DrakegaitError
 from drakegait.gait import Gait
-from drakegait.reference.curves import SampledCurves, SplineCurves
-from drakegait.reference.reference import DeviationSettings, Reference
-from drakegait.solvers.outcome import Outcome
+from drakegait.program.kkt import KktMultipliers
+from drakegait.reference.netcdf_file import reference_dataset, reference_of
+from drakegait.solvers.outcome import Outcome, StartRecord
 from drakegait.study import GaitStudy
 from drakegait.summary import versions
 from drakegait.transcription.design_vector import DesignValues
-from drakegait.transcription.foot_placement import FootPlacement
-from drakegait.transcription.splines import PeriodicQuintic
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FORMAT = "drakegait gait"
 FORMAT_VERSION = 1
@@ -42,9 +38,10 @@ _DESIGN_DIMS = {
     "multipliers": ("control_point", "contact_row"),
     "residuals": ("control_point", "coordinate"),
 }
-# Dense enough that a fitted spline is the same curve for every purpose (errors < 1e-7 rad).
-_REFERENCE_NODES = 201
-_FORCE_INTERVALS = 1200  # a multiple of the usual tables' 50, 100, 200: then exact
+_KKT_DIMS = {
+    "x": "variable", "rows": "row", "lower": "variable", "upper": "variable",
+    "event_centres": "event_centre",
+}  # fmt: skip
 
 
 def save(gait: Gait, path: str | Path) -> None:
@@ -77,8 +74,11 @@ def save(gait: Gait, path: str | Path) -> None:
     try:
         root.to_netcdf(beside, engine="h5netcdf")
         xr.Dataset(design).to_netcdf(beside, mode="a", group="design", engine="h5netcdf")
+        if gait.kkt is not None:
+            kkt = {name: (dim, getattr(gait.kkt, name)) for name, dim in _KKT_DIMS.items()}
+            xr.Dataset(kkt).to_netcdf(beside, mode="a", group="kkt", engine="h5netcdf")
         if gait.study.reference is not None:
-            reference = _reference_dataset(gait.study.reference)
+            reference = reference_dataset(gait.study.reference)
             reference.to_netcdf(beside, mode="a", group="reference", engine="h5netcdf")
         os.replace(beside, path)
     except OSError as error:
@@ -104,7 +104,7 @@ def load(path: str | Path) -> Gait:
     if version != FORMAT_VERSION:
         raise BadFile(path, f"has format {version}, but this drakegait reads {FORMAT_VERSION}.")
     try:
-        reference = _reference(groups["reference"]) if "reference" in groups else None
+        reference = reference_of(*groups["reference"]) if "reference" in groups else None
         study = GaitStudy.from_dict(json.loads(attributes["study"]), reference)
         design = {name: groups["design"][0][name] for name in _DESIGN_DIMS}
         if not all(np.isfinite(array).all() for array in design.values()):
@@ -112,13 +112,16 @@ def load(path: str | Path) -> Gait:
         design["stride_time"] = float(design["stride_time"])
         outcome = json.loads(attributes["outcome"])
         lists = {name: tuple(x) for name, x in outcome.items() if isinstance(x, list)}
+        lists["starts"] = tuple(_start_record(item) for item in lists.get("starts", ()))
         report = json.loads(attributes["check"])
+        kkt = groups["kkt"][0] if "kkt" in groups else None
         return Gait(
             study=study,
             values=DesignValues(**design),
             outcome=Outcome(**{**outcome, **lists}),
             cost=json.loads(attributes["cost"]),
             report=None if report is None else CheckReport.from_dict(report),
+            kkt=None if kkt is None else KktMultipliers(**{name: kkt[name] for name in _KKT_DIMS}),
         )
     except KeyError as error:
         raise BadFile(path, f"is damaged: {error} is missing.") from None
@@ -147,49 +150,9 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, Group]]:
         raise BadFile(path, "cannot be read: damaged, or not a netCDF file.") from None
 
 
+def _start_record(plain: dict[str, Any]) -> StartRecord:
+    return StartRecord(**{**plain, "phase_durations": tuple(plain["phase_durations"])})
+
+
 def _text(plain: Any) -> str:
     return json.dumps(plain, default=lambda number: number.item())
-
-
-def _reference_dataset(reference: Reference) -> xr.Dataset:
-    import xarray as xr
-
-    motion = reference.motion
-    if isinstance(motion, SplineCurves):
-        coefficients = motion.coefficients
-    else:
-        spline = PeriodicQuintic(_REFERENCE_NODES)
-        coefficients = spline.coefficients(reference.coordinate_values(spline.node_times).T)
-    arrays = {"coefficients": (("coordinate", "coefficient"), coefficients)}
-    if reference.forces is not None:
-        tau = np.linspace(0.0, 1.0, _FORCE_INTERVALS + 1)
-        forces = reference.ground_reactions(tau).reshape(len(tau), 6)
-        arrays["forces"] = (("instant", "force"), forces)
-    facts = {
-        "kind": reference.kind,
-        "name": reference.name,
-        "stride_time": reference.stride_time,
-        "phase_fractions": list(reference.phase_fractions),
-        "foot_placement": dataclasses.asdict(reference.foot_placement),
-        "deviation": reference.deviation.to_dict(),
-    }
-    return xr.Dataset(arrays, attrs={"facts": _text(facts)})
-
-
-def _reference(group: Group) -> Reference:
-    arrays, facts = group[0], json.loads(group[1]["facts"])
-    coefficients = arrays["coefficients"]
-    forces = arrays.get("forces")
-    if forces is not None:
-        forces = np.vstack([forces[:-1], forces[:1]])  # the ends agree but for rounding
-        forces = SampledCurves(np.linspace(0.0, 1.0, len(forces)), forces)
-    return Reference(
-        kind=facts["kind"],
-        name=facts["name"],
-        stride_time=facts["stride_time"],
-        phase_fractions=tuple(facts["phase_fractions"]),
-        foot_placement=FootPlacement(**facts["foot_placement"]),
-        motion=SplineCurves(PeriodicQuintic(coefficients.shape[1] + 1), coefficients),
-        forces=forces,
-        deviation=DeviationSettings(**facts["deviation"]),
-    )

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from drakegait.check import CheckItem
+from drakegait.judged_disorders import disorders
 from drakegait.loads import Loads, loads_along, muscle_inputs
 from drakegait.motion import Motion
 from drakegait.walker import feet
@@ -114,7 +115,7 @@ def judge(gait: Gait, instants: int) -> tuple[CheckItem, ...]:
     judged = Judged(gait, instants)
     groups: list[Callable[[Judged], list[CheckItem]]] = [
         equations_of_motion, foot_contact, muscles, ground_forces, energy_balance, whole_stride,
-        costs,
+        costs, disorders,
     ]  # fmt: skip
     return tuple(item for group in groups for item in group(judged))
 
@@ -154,7 +155,7 @@ def foot_contact(judged: Judged) -> list[CheckItem]:
     distance = np.abs(rows - wanted)
     # A heading in terms of length: 0.01 rad weighs as much as 2 mm, a lever of 0.2 m.
     distance[:, list(feet.YAW_ROWS)] *= tolerance / study.tolerances.yaw_tolerance
-    distance = np.where(judged.loads.active, distance, -np.inf)
+    distance = np.where(judged.loads.active[:, : feet.NUM_ROWS], distance, -np.inf)
     limit = 1e3 * SLACK * tolerance
     return [
         judged.worst(
@@ -182,7 +183,7 @@ def ground_forces(judged: Judged) -> list[CheckItem]:
     """The ground only pushes and holds no more than friction allows, docs/formulation.md 6.9."""
     contact, loads = judged.gait.study.contact, judged.loads
     force, by_point = loads.ground_reactions, loads.point_forces[..., 2]
-    active = loads.active.reshape(-1, 2, feet.ROWS_PER_FOOT)
+    active = loads.active[:, : feet.NUM_ROWS].reshape(-1, 2, feet.ROWS_PER_FOOT)
     standing = active.any(axis=2)
     # Horizontal forces that the tolerance of the equations of motion covers are no slip.
     unseen = SLACK * judged.gait.study.tolerances.force_tolerance
@@ -199,12 +200,19 @@ def ground_forces(judged: Judged) -> list[CheckItem]:
         loads.active[:, list(feet.VERTICAL_ROWS)], by_point.reshape(-1, 4), np.inf
     )
     names = ("right foot", "left foot")
+    torques = []
+    if contact.toe_torque:
+        size = np.abs(loads.toe_torques).reshape(-1, 4)
+        limit = contact.toe_torque_limit + spare
+        torques = [judged.worst("toe_torque_max_Nm", "torque at the toe", size, "N m", limit,
+                                feet.TORQUE_NAMES)]  # fmt: skip
     return [
         judged.worst("friction_ratio_max", "friction used", slip, "", 1.0 + GRIP_SLACK, names),
         judged.worst("free_moment_excess_Nm", "free moment beyond grip", twist, "N m", spare,
                      names),
         judged.worst("normal_force_min_N", "smallest vertical force", loaded, "N",
                      -LEAST_LOAD * judged.body_weight, feet.POINT_NAMES, largest=False),
+        *torques,
     ]  # fmt: skip
 
 

@@ -31,7 +31,7 @@ class Loads:
         contact: C^T lambda*.
         residual: e of eq. (18).
         multipliers: lambda* of the contact rows (K, 14), zero where a row is not loaded [N, N m].
-        active: contact rows that bear load (K, 14), mask.
+        active: contact rows that bear load (K, 14), mask; both (K, 18) with torques at the toe.
     """
 
     inertia: np.ndarray
@@ -51,13 +51,21 @@ class Loads:
     @property
     def point_forces(self) -> np.ndarray:
         """Force on heel and toe of each foot (K, 2, 2, 3) [N]."""
-        by_foot = self.multipliers.reshape(-1, 2, feet.ROWS_PER_FOOT)
+        by_foot = self.multipliers[:, : feet.NUM_ROWS].reshape(-1, 2, feet.ROWS_PER_FOOT)
         return by_foot[:, :, :6].reshape(-1, 2, 2, 3)
 
     @property
     def pivot_moments(self) -> np.ndarray:
         """Moment about the vertical through the pivot point of each foot (K, 2) [N m]."""
         return self.multipliers[:, list(feet.YAW_ROWS)]
+
+    @property
+    def toe_torques(self) -> np.ndarray:
+        """Torques about x and y on each foot that stands alone (K, 2, 2) [N m], mostly none."""
+        torques = self.multipliers[:, feet.NUM_ROWS :]
+        if torques.shape[1] == 0:
+            return np.zeros((len(torques), 2, 2))
+        return torques.reshape(-1, 2, 2)
 
 
 def loads_along(walker: Walker, motion: Motion, phases: np.ndarray) -> Loads:
@@ -69,8 +77,9 @@ def loads_along(walker: Walker, motion: Motion, phases: np.ndarray) -> Loads:
     muscles = walker.muscles.joint_torques(motion.forces)
     needed = inertia - gravity - passive - muscles
     jacobian = skeleton.contact_jacobian(q)
-    active = np.array([feet.active_rows(p, skeleton.kind == "planar") for p in range(8)])[phases]
-    multipliers = np.zeros((len(q), feet.NUM_ROWS))
+    planar, torques = skeleton.kind == "planar", skeleton.toe_torque
+    active = np.array([feet.active_rows(p, planar, torques) for p in range(8)])[phases]
+    multipliers = np.zeros(active.shape)
     for phase in np.unique(phases):
         at = np.flatnonzero(phases == phase)
         rows = np.flatnonzero(active[at[0]])

@@ -195,7 +195,11 @@ def centre_of_pressure(
     total = vertical.sum(axis=2)
     loaded = total > least_load
     safe = np.where(loaded, total, 1.0)
-    centre = np.einsum("kfp,kfpa->kfa", vertical, points) / safe[..., None]
+    moments = np.einsum("kfp,kfpa->kfa", vertical, points)
+    tilting = loads.toe_torques
+    moments[..., 0] -= tilting[..., 1]
+    moments[..., 1] += tilting[..., 0]
+    centre = moments / safe[..., None]
     arm = points - centre[:, :, None]
     moment = (arm[..., 0] * forces[..., 1] - arm[..., 1] * forces[..., 0]).sum(axis=2)
     moment = np.where(loaded, moment + loads.pivot_moments, 0.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,15 +11,21 @@ import numpy as np
 from drakegait.check import check
 from drakegait.errors import InvalidInput
 from drakegait.gait import Gait
+from drakegait.program.differences import DifferencedProgram
 from drakegait.program.gait_program import GaitProgram
-from drakegait.program.guess import guess_from_reference, guess_from_values
+from drakegait.program.guess import guess_from_values
+from drakegait.program.kkt import KktMultipliers
+from drakegait.program.starts import REFERENCE, Start
+from drakegait.program.starts import starts as several_starts
 from drakegait.solvers.advice import advice_for
 from drakegait.solvers.monitor import Monitor, Progress
 from drakegait.solvers.options import SolverOptions
 from drakegait.solvers.outcome import Outcome
 from drakegait.solvers.solution import MESSAGES, Solution
+from drakegait.starts import best_of
 from drakegait.study import GaitStudy
 from drakegait.transcription.design_vector import DesignValues
+from drakegait.walker.rotation_sequence import convert
 
 MAX_ROUNDS = 3  # of added control points
 _MAX_RECENTRINGS = 3
@@ -32,6 +38,8 @@ def solve(
     guess: Gait | None = None,
     options: SolverOptions | None = None,
     refine: bool = True,
+    starts: int | Sequence[Start] = 1,
+    seed: int = 0,
     report: Callable[[Progress], None] | None = None,
     **choices: object,
 ) -> Gait:
@@ -45,6 +53,10 @@ def solve(
             (`solver="snopt"`, `time_limit=60.0` [s]).
         refine: add control points where the check fails and solve again from there, at most
             `MAX_ROUNDS` times.
+        starts: solve from so many starting points, one after the other, and keep the best: the
+            guess, standing, silent muscles, then the reference with 10 to 30 per cent of noise;
+            or from those given (`drakegait.program.starts`).
+        seed: of the noise.
         report: called with the progress of the solve.
 
     Returns:
@@ -59,21 +71,34 @@ def solve(
     if guess is not None:
         check_guess(study, guess)
     _solver(options.solver)
-    started = time.monotonic()
+    if options.derivatives != "analytic" and options.solver in ("ipopt", "snopt"):
+        raise InvalidInput("solver", options.solver, "ipopt-mumps with finite differences")
+    points = several_starts(starts, seed) if isinstance(starts, int) else list(starts)
     with Monitor(options.time_limit, report) as monitor:
-        run = _Run(study, options, monitor)
-        run.first(guess)
-        gait = run.gait(started)
-        rounds = MAX_ROUNDS if refine else 0
-        for _ in range(rounds):
-            failing = gait.report.worst_phases() if run.solution.status == "converged" else set()
-            if not failing or monitor.stop_reason is not None:
-                break
-            run.refine(failing)
-            denser = run.gait(started)
-            if denser.outcome.status != "converged":
-                return _unrefined(gait, denser)
-            gait = denser
+
+        def attempt(start: Start) -> Gait:
+            own = guess if start.kind == REFERENCE else None
+            return _find(_Run(study, options, monitor), own, start, refine)
+
+        if len(points) == 1:
+            return attempt(points[0])
+        return best_of(points, attempt, lambda: monitor.stop_reason is not None)
+
+
+def _find(run: _Run, guess: Gait | None, start: Start, refine: bool) -> Gait:
+    """One solve with its rounds of added control points."""
+    run.first(guess, start)
+    gait = run.gait()
+    rounds = MAX_ROUNDS if refine else 0
+    for _ in range(rounds):
+        failing = gait.report.worst_phases() if run.solution.status == "converged" else set()
+        if not failing or run.monitor.stop_reason is not None:
+            break
+        run.refine(failing)
+        denser = run.gait()
+        if denser.outcome.status != "converged":
+            return _unrefined(gait, denser)
+        gait = denser
     return gait
 
 
@@ -111,6 +136,10 @@ def _solver(name: str) -> Callable[..., Solution]:
         InvalidInput: ipopt-mumps where `ipyopt` is not installed; it has wheels for Linux on
             x86-64 only, Drake's solvers run everywhere.
     """
+    if name == "condensed":
+        from drakegait.solvers.condensed.solve import solve_condensed
+
+        return solve_condensed
     if name != "ipopt-mumps":
         from drakegait.solvers.drake import solve_with_drake
 
@@ -135,14 +164,22 @@ class _Run:
         self.program: GaitProgram
         self.solution: Solution
 
-    def first(self, guess: Gait | None) -> None:
-        """The first round, from the reference or from an earlier gait."""
+    def _stated(self, events: np.ndarray | None) -> GaitProgram:
+        """The program of the study, its events bounded about `events`."""
+        differences = self.options.derivatives == "finite-differences"
+        kind = DifferencedProgram if differences else GaitProgram
+        return kind(self.study.formulation(events))
+
+    def first(self, guess: Gait | None, start: Start) -> None:
+        """The first round, from an earlier gait or else from `start`."""
         started = time.monotonic()
-        events = None if guess is None else guess.values.events
-        self.program = GaitProgram(self.study.formulation(events))
         if guess is None:
-            x = guess_from_reference(self.program)
+            study = self.study
+            centres = start.event_centres(study.reference_walk, study.symmetric)
+            self.program = self._stated(centres)
+            x = start.point(self.program)
         else:
+            self.program = self._stated(guess.values.events)
             x = guess_from_values(self.program, self._resampled(guess))
         self.setup_time += time.monotonic() - started
         self._solve(x, warm=guess is not None)
@@ -163,7 +200,7 @@ class _Run:
 
     def _again(self, values: DesignValues) -> None:
         started = time.monotonic()
-        self.program = GaitProgram(self.study.formulation(values.events))
+        self.program = self._stated(values.events)
         x = guess_from_values(self.program, values)
         self.setup_time += time.monotonic() - started
         self._solve(x, warm=True)
@@ -191,6 +228,22 @@ class _Run:
         """The guess on this study's nodes; its contact forces are fitted anew if points differ."""
         values, nodes = guess.values, self.study.nodes
         splines = self.program.formulation.splines
+        given, wanted = guess.study.variants.sequence, self.study.variants.sequence
+        if given != wanted:
+            nodal = guess.splines.nodal_values(values.coordinate_coefficients)
+            nodal = convert(nodal.T, given, wanted).T
+            values = replace(values, coordinate_coefficients=guess.splines.coefficients(nodal))
+        muscles = self.study.walker.muscles
+        if guess.muscle_names != muscles.names:
+            # Another set of muscles: those that both have keep their forces.
+            known = dict(zip(guess.muscle_names, values.force_coefficients, strict=True))
+            least = self.study.muscles.min_force * muscles.f_max
+            count = values.force_coefficients.shape[1]
+            forces = [
+                known.get(name, np.full(count, force))
+                for name, force in zip(muscles.names, least, strict=True)
+            ]
+            values = replace(values, force_coefficients=np.array(forces))
         if guess.study.nodes != nodes:
             samples = np.arange(8 * nodes) / (8 * nodes)
             values = replace(
@@ -204,7 +257,7 @@ class _Run:
             )
         return values
 
-    def gait(self, started: float) -> Gait:
+    def gait(self) -> Gait:
         """The gait that this round found, checked."""
         program, solution = self.program, self.solution
         worst = () if solution.status == "converged" else tuple(program.worst(solution.x))
@@ -231,5 +284,14 @@ class _Run:
             values=program.values(solution.x),
             outcome=outcome,
             cost={"total": sum(parts.values()), **parts},
+            kkt=self._multipliers(),
         )
         return replace(found, report=check(found))
+
+    def _multipliers(self) -> KktMultipliers | None:
+        """Those of the solution, if the solver gave them for it."""
+        solution, centres = self.solution, np.array(self.program.formulation.event_centres)
+        given = solution.row_multipliers, solution.lower_multipliers, solution.upper_multipliers
+        if solution.status not in ("converged", "acceptable") or any(x is None for x in given):
+            return None
+        return KktMultipliers(solution.x, *given, centres)

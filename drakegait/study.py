@@ -20,12 +20,17 @@ import numpy as np
 
 from drakegait.errors import InvalidInput, UnknownName
 from drakegait.program.formulation import Formulation, JointLimit, Tolerances
+from drakegait.program.variants import Variants
 from drakegait.reference.deviation import DeviationSettings
 from drakegait.reference.reference import Reference
-from drakegait.settings import Settings, find, parse
+from drakegait.reference.sequence import in_sequence
+from drakegait.settings import find, parse
+from drakegait.study_file import study_statements, study_to_dict
+from drakegait.study_rules import check_both_sides, check_limits, check_number
 from drakegait.transcription.schedule import Schedule
 from drakegait.transcription.splines import PeriodicQuintic
 from drakegait.walker import coordinates
+from drakegait.walker.disorders import Asymmetry, Disorder, Pain, check_disorders
 from drakegait.walker.feet import ContactSettings
 from drakegait.walker.metabolics import EnergySettings
 from drakegait.walker.muscle_dynamics import MuscleSettings
@@ -41,6 +46,7 @@ SETTINGS_GROUPS = {
     "energy": EnergySettings,
     "passive": PassiveSettings,
     "deviation": DeviationSettings,
+    "variants": Variants,
 }
 FEWEST_NODES, MOST_NODES = 10, 141
 SPEEDS = (0.3, 2.5)  # [m/s]
@@ -62,13 +68,17 @@ class GaitStudy:
         energy_weight, deviation_weight: w_E and w_J of eq. (13).
         strength: factor on the largest force of muscles, by name (`"soleus_l"`) or group.
         planar_muscles: muscle set of the planar models, `"table3"` or `"gait2d"`.
+        muscle_changes: other values in the muscle table, `{"SOL": {"l_slack": 0.245}}` [m];
+            see `MuscleSet.load`.
         sdf: text of an SDF model of your own (for 1.80 m, 75 kg); default the shipped one.
         reference: the walk to stay close to; default the embedded stride of the model.
         multipliers: `"lifted"` (contact forces as variables) or `"projected"` (eq. 17).
         interior_points: control points inside each of the 8 (symmetric: 4) phases; default
             by the number of nodes.
         limits: optional joint limits.
+        disorders: what makes this walker differ, see `drakegait.walker.disorders`.
         tolerances, contact, muscles, energy, passive, deviation: constants.
+        variants: other forms of the same problem, for comparison.
 
     Raises:
         InvalidInput, UnknownName: naming the value and what is allowed.
@@ -83,17 +93,20 @@ class GaitStudy:
     deviation_weight: float = 1.0
     strength: Mapping[str, float] = field(default_factory=dict)
     planar_muscles: str = "table3"
+    muscle_changes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     sdf: str | None = None
     reference: Reference | None = field(default=None, compare=False)
     multipliers: str = "lifted"
     interior_points: tuple[int, ...] | None = None
     limits: tuple[JointLimit, ...] = ()
+    disorders: tuple[Disorder, ...] = ()
     tolerances: Tolerances = field(default_factory=Tolerances)
     contact: ContactSettings = field(default_factory=ContactSettings)
     muscles: MuscleSettings = field(default_factory=MuscleSettings)
     energy: EnergySettings = field(default_factory=EnergySettings)
     passive: PassiveSettings = field(default_factory=PassiveSettings)
     deviation: DeviationSettings = field(default_factory=DeviationSettings)
+    variants: Variants = field(default_factory=Variants)
 
     def __post_init__(self) -> None:
         if self.model not in MODELS:
@@ -101,9 +114,9 @@ class GaitStudy:
         if self.multipliers not in ("lifted", "projected"):
             raise UnknownName("multipliers", self.multipliers, ("lifted", "projected"))
         self._check_nodes()
-        _check_number("speed", self.speed, *SPEEDS, "m/s")
-        _check_number("energy weight", self.energy_weight, 0.0, 1e3, "-")
-        _check_number("deviation weight", self.deviation_weight, 0.0, 1e3, "-")
+        check_number("speed", self.speed, *SPEEDS, "m/s")
+        check_number("energy weight", self.energy_weight, 0.0, 1e3, "-")
+        check_number("deviation weight", self.deviation_weight, 0.0, 1e3, "-")
         if self.energy_weight == 0.0 and self.deviation_weight == 0.0:
             raise InvalidInput("weights", (0.0, 0.0), "positive in at least one place")
         if self.reference is not None and self.reference.kind != self.skeleton_kind:
@@ -115,6 +128,8 @@ class GaitStudy:
         for limit in self.limits:
             if limit.coordinate not in names:
                 raise UnknownName("coordinate of a limit", limit.coordinate, names)
+        check_disorders(self.disorders, self.skeleton_kind, self.symmetric)
+        check_limits(self.all_limits)
 
     def _check_nodes(self) -> None:
         whole = isinstance(self.nodes, (int, np.integer)) and not isinstance(self.nodes, bool)
@@ -156,6 +171,14 @@ class GaitStudy:
     ) -> GaitStudy:
         """A copy that wears `mass` [kg] on `segment`, at `point` of its frame [m]."""
         return self.replace(added_masses=(*self.added_masses, AddedMass(segment, mass, point)))
+
+    def with_disorder(self, *disorders: Disorder | AddedMass) -> GaitStudy:
+        """A copy with further disorders, see `drakegait.walker.disorders`."""
+        worn = tuple(item for item in disorders if isinstance(item, AddedMass))
+        others = tuple(item for item in disorders if not isinstance(item, AddedMass))
+        return self.replace(
+            added_masses=(*self.added_masses, *worn), disorders=(*self.disorders, *others)
+        )
 
     def with_limit(
         self, coordinate: str, low: float = -math.inf, high: float = math.inf
@@ -203,14 +226,25 @@ class GaitStudy:
             self.strength,
             self.planar_muscles,
             self.sdf,
+            muscle_changes=self.muscle_changes,
+            toe_torque=self.contact.toe_torque,
+            sequence=self.variants.sequence,
+            disorders=self.disorders,
         )
 
     @cached_property
     def reference_walk(self) -> Reference:
         """The walk that this one is compared with."""
-        if self.reference is not None:
-            return self.reference
-        return Reference.embedded(self.skeleton_kind, self.subject, deviation=self.deviation)
+        walk = self.reference
+        if walk is None:
+            walk = Reference.embedded(self.skeleton_kind, self.subject, deviation=self.deviation)
+        return in_sequence(walk, self.variants.sequence)
+
+    @property
+    def all_limits(self) -> tuple[JointLimit, ...]:
+        """Joint limits, those of disorders included."""
+        ranges = (limit for item in self.disorders for limit in item.limits())
+        return (*self.limits, *(JointLimit(*limit) for limit in ranges))
 
     @property
     def schedule(self) -> Schedule:
@@ -228,7 +262,12 @@ class GaitStudy:
         Args:
             event_centres: fractions of the cycle (8,) around which the events may move;
                 default those of the reference.
+
+        Raises:
+            InvalidInput: a symmetric walker whose weights, strengths or limits have one side only.
         """
+        if self.symmetric:
+            check_both_sides(self)  # not at birth, so that one side can be stated after the other
         if event_centres is None:
             fractions = np.asarray(self.reference_walk.phase_fractions)
             event_centres = np.concatenate([[0.0], np.cumsum(fractions)[:-1]])
@@ -243,52 +282,21 @@ class GaitStudy:
             schedule=self.schedule,
             tolerances=self.tolerances,
             contact=self.contact,
-            limits=self.limits,
+            limits=self.all_limits,
             lifted=self.multipliers == "lifted",
+            variants=self.variants,
+            asymmetries=tuple(x for x in self.disorders if isinstance(x, Asymmetry)),
+            pains=tuple(x for x in self.disorders if isinstance(x, Pain)),
             event_centres=tuple(float(centre) for centre in event_centres),
         )
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the reference, as plain types that JSON can hold."""
-        plain = {
-            item.name: getattr(self, item.name)
-            for item in dataclasses.fields(self)
-            if item.name != "reference"
-        }
-        for name, value in plain.items():
-            if isinstance(value, Settings):
-                plain[name] = value.to_dict()
-        plain["strength"] = dict(self.strength)
-        plain["added_masses"] = [dataclasses.asdict(item) for item in self.added_masses]
-        plain["limits"] = [dataclasses.asdict(item) for item in self.limits]
-        points = self.interior_points
-        plain["interior_points"] = None if points is None else list(points)
-        return plain
+        return study_to_dict(self)
 
     @classmethod
     def from_dict(cls, plain: Mapping[str, Any], reference: Reference | None = None) -> GaitStudy:
         """Inverse of `to_dict`; raises UnknownName for a key that no study has."""
-        values = dict(plain)
-        known = {item.name for item in dataclasses.fields(cls)}
-        for name in values:
-            if name not in known:
-                raise UnknownName("study key", name, sorted(known))
+        known = tuple(item.name for item in dataclasses.fields(cls))
         groups = {"subject": Subject, **SETTINGS_GROUPS}
-        for name, group in groups.items():
-            if name in values:
-                values[name] = group(**values[name])
-        values["added_masses"] = tuple(
-            AddedMass(item["segment"], item["mass"], item.get("point"))
-            for item in values.get("added_masses", ())
-        )
-        values["limits"] = tuple(JointLimit(**item) for item in values.get("limits", ()))
-        points = values.get("interior_points")
-        values["interior_points"] = None if points is None else tuple(points)
-        return cls(**values, reference=reference)
-
-
-def _check_number(name: str, value: Any, low: float, high: float, unit: str) -> None:
-    kinds = (int, float, np.integer, np.floating)
-    number = isinstance(value, kinds) and not isinstance(value, bool)
-    if not number or not low <= value <= high:  # nan is in no range
-        raise InvalidInput(name, value, f"a number from {low:g} to {high:g} [{unit}]")
+        return cls(**study_statements(plain, known, groups), reference=reference)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from drakegait.gait import Gait
+    from drakegait.solvers.outcome import StartRecord
 
 CHECKED = (
     "equations_of_motion_max_N",
@@ -44,6 +45,7 @@ def summarise(gait: Gait) -> dict[str, Any]:
             "iterations": outcome.iterations,
             "wall_time_s": outcome.wall_time,
             "setup_time_s": outcome.setup_time,
+            "starts": [_start(record) for record in outcome.starts],
         },
         "problem": {
             "num_variables": outcome.num_variables,
@@ -65,6 +67,18 @@ def summarise(gait: Gait) -> dict[str, Any]:
         },
         "check": {name: None if report is None else getattr(report, name) for name in CHECKED},
         "versions": versions(),
+    }
+
+
+def _start(record: StartRecord) -> dict[str, Any]:
+    return {
+        "start": record.start,
+        "status": record.status,
+        "cost": record.cost,
+        "metabolic_cost_of_transport_J_per_m": record.energy,
+        "iterations": record.iterations,
+        "wall_time_s": record.wall_time,
+        "phase_durations_s": list(record.phase_durations),
     }
 
 

@@ -289,7 +289,7 @@ def test_basal_rate_counts(planar):
 
 SUMMARY_KEYS = {
     "model": None, "nodes": None, "control_points": None, "subject": {"height_m", "mass_kg"},
-    "solver": {"name", "status", "iterations", "wall_time_s", "setup_time_s"},
+    "solver": {"name", "status", "iterations", "wall_time_s", "setup_time_s", "starts"},
     "problem": {"num_variables", "num_constraints", "jacobian_nonzeros"},
     "cost": {"total", "metabolic_cost_of_transport_J_per_m", "deviation"},
     "gait": {"speed_m_per_s", "stride_time_s", "step_length_right_m", "step_length_left_m",

@@ -25,8 +25,11 @@ MAY_IMPORT = {
     "walker": _GROUND,
     "transcription": _GROUND,
     "reference": _MODELS,
+    "measured": _MODELS | {"reference"},
     "program": _MODELS | {"reference"},
-    "study": _MODELS | {"reference", "program"},
+    "study": _MODELS | {"reference", "program", "study_file", "study_rules"},
+    "study_file": _MODELS | {"reference", "program", "study"},
+    "study_rules": _MODELS | {"reference", "program", "study"},
     "solvers": _MODELS | {"reference", "program"},
 }
 # Parts that start a solve. All others (gait, check, report, replay and their helpers) read a
@@ -35,7 +38,7 @@ SOLVING = {"__init__", "cli", "commands", "solve", "sweep"}
 SOLVER_RECORD = "drakegait.solvers.outcome"
 SOLVER_LIBRARIES = ("drakegait.solvers", "pydrake.solvers", "ipyopt")
 # The judges of a gait evaluate it on their own and do not look at the rows of the program.
-JUDGES = {"check", "judgement"}
+JUDGES = {"check", "judgement", "judged_disorders"}
 
 
 def imported(path: Path, root: Path = ROOT) -> list[str]:
@@ -154,7 +157,8 @@ def test_wheel_carries_models_data_and_licences_and_finds_them(tmp_path):
     with zipfile.ZipFile(next(tmp_path.glob("*.whl"))) as wheel:
         names = set(wheel.namelist())
         wheel.extractall(tmp_path / "site")
-    data = [p for p in PACKAGE.rglob("data/*") if p.is_file()]
+    data = [*PACKAGE.rglob("data/*"), *PACKAGE.rglob("templates/*.html")]
+    data = [p for p in data if p.is_file()]
     expected = {str(p.relative_to(ROOT)) for p in [*MODULES, *data]}
     expected |= {f"drakegait/sdf/{p.name}" for p in (ROOT / "sdf").iterdir()}
     assert expected <= names

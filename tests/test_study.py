@@ -138,9 +138,10 @@ def test_every_constant_can_be_set_to_each_end_of_its_range(name):
 def test_a_study_survives_json():
     study = (
         GaitStudy(
-            model="planar-symmetric", nodes=21, speed=0.9, subject=Subject(height=1.6, mass=55.0),
+            model="planar", nodes=21, speed=0.9, subject=Subject(height=1.6, mass=55.0),
             energy_weight=0.3, deviation_weight=2.0, strength={"SOL": 0.7},
-            planar_muscles="gait2d", multipliers="projected", interior_points=(5, 4, 6, 7),
+            planar_muscles="gait2d", multipliers="projected",
+            interior_points=(5, 4, 6, 7, 5, 4, 6, 8),
         )
         .with_added_mass("thigh_l", 1.5, (0.0, 0.05, -0.1))
         .with_limit("knee_flexion_r", 0.0, 1.0)

@@ -14,11 +14,11 @@ from typing import Any
 
 import typer
 
-from drakegait.cli import look, walk
+from drakegait.cli import compare, export, import_, look, sensitivities, sweep, walk
 from drakegait.cli.app import app
 from drakegait.errors import DrakegaitError
 
-__all__ = ["app", "look", "main", "walk"]
+__all__ = ["app", "compare", "export", "import_", "look", "main", "sensitivities", "sweep", "walk"]
 
 BAD_INPUT, INTERRUPTED = 2, 130
 # Typer's errors about options derive from these; where Typer keeps them depends on its version.

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand
 
+from drakegait.cli import disorder_options as disorder
 from drakegait.cli.app import app, number, option, whole
 
 
@@ -33,27 +34,31 @@ def walk(
         "--nodes", panel=_QUESTION, metavar="N", parser=whole("--nodes"),
         help="Spline nodes per stride, 10 to 141; odd for symmetric models. Default: 18, "
         "spatial-symmetric 19, planar-symmetric 35.")] = None,
-    speed: Annotated[float, option(
+    speed: Annotated[float | None, option(
         "--speed", panel=_QUESTION, metavar="V", parser=number("--speed"),
-        help="Average forward velocity in m/s, 0.3 to 2.5.")] = 1.2,
+        help="Average forward velocity in m/s, 0.3 to 2.5. Default: 1.2, or that of an imported "
+        "reference.")] = None,
     weights: Annotated[tuple[str, str], option(
         "--weights", panel=_QUESTION, metavar="ENERGY DEVIATION",
         help="Weights of metabolic energy and of deviation from the reference in the cost, "
         "no unit, 0 to 1000.")] = ("1", "1"),
     reference: Annotated[str | None, option(
         "--reference", panel=_QUESTION, metavar="FILE|NAME",
-        help="Walk to stay close to: a CSV file (docs/conventions.md) or normal, asymmetric, "
-        "measured, planar. Default: normal, for planar models planar.")] = None,
+        help="Walk to stay close to: a person's from `drakegait import` (.nc), a CSV file "
+        "(docs/conventions.md), or normal, asymmetric, measured, planar. Default: normal, for "
+        "planar models planar.")] = None,
     limit: Annotated[list[str] | None, option(
         "--limit", panel=_QUESTION, metavar="COORDINATE=LOW:HIGH",
         help="Keep a coordinate in a range, degrees or m, anatomical sign; one end may be left "
         "out. Example: knee_flexion_r=:45. Repeatable.")] = None,
-    height: Annotated[float, option(
+    height: Annotated[float | None, option(
         "--height", panel=_PERSON, metavar="H", parser=number("--height"),
-        help="Body height in m, 1.2 to 2.2.")] = 1.8,
-    mass: Annotated[float, option(
+        help="Body height in m, 1.2 to 2.2. Default: 1.8, or that of an imported "
+        "reference.")] = None,
+    mass: Annotated[float | None, option(
         "--mass", panel=_PERSON, metavar="M", parser=number("--mass"),
-        help="Body mass in kg, 30 to 200.")] = 75.0,
+        help="Body mass in kg, 30 to 200. Default: 75, or that of an imported "
+        "reference.")] = None,
     added_mass: Annotated[list[str] | None, option(
         "--added-mass", panel=_PERSON, metavar="SEGMENT=KG[@X,Y,Z]",
         help="Weight in kg worn on hat, thigh_r, shank_r, foot_r, thigh_l, shank_l or foot_l, at "
@@ -63,9 +68,23 @@ def walk(
         "--strength", panel=_PERSON, metavar="MUSCLE=FACTOR",
         help="Factor 0.01 to 10 on the largest force of a muscle (soleus_l), of both sides "
         "(soleus) or of a group (SOL). Repeatable.")] = None,
+    muscle: Annotated[list[str] | None, option(
+        "--muscle", panel=_PERSON, metavar="MUSCLE.ENTRY=VALUE",
+        help="Another value in the muscle table, for 1.80 m and 75 kg: f_max in N, l_opt, l_slack "
+        "or l0 in m, width without unit. Example: SOL.l_slack=0.245. Repeatable.")] = None,
     planar_muscles: Annotated[str, option(
         "--planar-muscles", panel=_PERSON, metavar="SET",
         help="Muscle set of the planar models: table3 or gait2d.")] = "table3",
+    weakness: disorder.Weakness = None,
+    contracture: disorder.Contracture = None,
+    spasticity: disorder.Spasticity = None,
+    stiffness: disorder.Stiffness = None,
+    range_: disorder.Range = None,
+    leg_length: disorder.LegLength = None,
+    prosthesis: disorder.Prosthesis = None,
+    orthosis: disorder.Orthosis = None,
+    asymmetry: disorder.Asymmetry = None,
+    pain: disorder.Pain = None,
     sdf: Annotated[str | None, option(
         "--sdf", panel=_PERSON, metavar="FILE",
         help="SDF model of your own, written for 1.80 m and 75 kg, with the joints, links and "
@@ -76,8 +95,8 @@ def walk(
         "Example: friction=0.4. Repeatable.")] = None,
     solver: Annotated[str | None, option(
         "--solver", panel=_WAY, metavar="SOLVER",
-        help="ipopt-mumps (IPOPT with MUMPS), or Drake's own ipopt or snopt. "
-        "Default: ipopt-mumps.")] = None,
+        help="condensed (interior point on a dense core), ipopt-mumps (IPOPT with MUMPS), or "
+        "Drake's own ipopt or snopt. Default: condensed.")] = None,
     multipliers: Annotated[str, option(
         "--multipliers", panel=_WAY, metavar="KIND",
         help="Contact forces: lifted (as variables) or projected (pseudo-inverse of "
@@ -93,6 +112,13 @@ def walk(
         "--refine/--no-refine", panel=_WAY,
         help="Add control points where the check fails and solve again, at most "
         "3 times.")] = True,
+    starts: Annotated[int, option(
+        "--starts", panel=_WAY, metavar="K", parser=whole("--starts"),
+        help="Solve from K starting points, one after the other, and keep the cheapest gait: the "
+        "guess, standing, silent muscles, then the reference with noise.")] = 1,
+    seed: Annotated[int, option(
+        "--seed", panel=_WAY, metavar="N", parser=whole("--seed"),
+        help="Seed of the noise of --starts.")] = 0,
     out: Annotated[str, option(
         "--out", panel=_FILES, metavar="DIR",
         help="Folder for gait.nc, summary.json, figures/ and replay.html.")] = "out/walk",

@@ -22,6 +22,7 @@ _HEADINGS = {
     "energy": "Metabolic energy",
     "passive": "Passive joint moments",
     "deviation": "Deviation from the reference",
+    "variants": "Other forms of the problem",
     "subject": "Body",
     "solver": "Solver",
 }

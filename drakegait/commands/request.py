@@ -8,11 +8,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from drakegait.commands.constants import read_constants
+from drakegait.commands.disorder_options import READERS, Texts, read_disorders
 from drakegait.commands.gait_files import load_gait
 from drakegait.errors import BadFile, InvalidInput, UnknownName
 from drakegait.gait import Gait
 from drakegait.program.formulation import JointLimit
+from drakegait.program.starts import starts as several_starts
 from drakegait.reference.embedded import GAITS
+from drakegait.reference.netcdf_file import is_netcdf, read_subject
 from drakegait.reference.reference import Reference
 from drakegait.solve import check_guess
 from drakegait.solvers.options import SolverOptions
@@ -21,7 +24,9 @@ from drakegait.walker import coordinates
 from drakegait.walker.subject import AddedMass, Subject
 
 _ADDED = "SEGMENT=KG or SEGMENT=KG@X,Y,Z with numbers [kg, m], for example foot_r=2.0"
+_CHANGE = "MUSCLE.ENTRY=VALUE with a number, for example SOL.l_slack=0.245"
 _STRENGTH = "MUSCLE=FACTOR with a number, for example soleus_l=0.5"
+_DEFAULT_SPEED = 1.2  # [m/s]
 _LIMIT = "COORDINATE=LOW:HIGH with numbers [degrees or m], for example knee_flexion_r=0:60"
 
 
@@ -31,14 +36,15 @@ class WalkRequest:
 
     model: str
     nodes: int | None
-    speed: float
+    speed: float | None
     weights: tuple[str, str]
     reference: str | None
     limit: Sequence[str] | None
-    height: float
-    mass: float
+    height: float | None
+    mass: float | None
     added_mass: Sequence[str] | None
     strength: Sequence[str] | None
+    muscle: Sequence[str] | None
     planar_muscles: str
     sdf: str | None
     set_: Sequence[str] | None
@@ -49,6 +55,18 @@ class WalkRequest:
     refine: bool
     out: str
     no_pictures: bool
+    starts: int = 1
+    seed: int = 0
+    weakness: Texts = None
+    contracture: Texts = None
+    spasticity: Texts = None
+    stiffness: Texts = None
+    range_: Texts = None
+    leg_length: Texts = None
+    prosthesis: Texts = None
+    orthosis: Texts = None
+    asymmetry: Texts = None
+    pain: Texts = None
 
     def prepare(self) -> tuple[GaitStudy, SolverOptions, Gait | None]:
         """Study, way to solve it and guess, all validated and the walker built.
@@ -62,7 +80,12 @@ class WalkRequest:
         options = SolverOptions(time_limit=self.time_limit, **constants.pop("solver", {}))
         if self.solver is not None:
             options = options.replace(solver=self.solver)
-        subject = Subject(height=self.height, mass=self.mass, **constants.pop("subject", {}))
+        person, measured_speed = self._measured_person()
+        subject = Subject(
+            height=person.height if self.height is None else self.height,
+            mass=person.mass if self.mass is None else self.mass,
+            **constants.pop("subject", {}),
+        )
         energy_weight, deviation_weight = (
             _number("--weights", " ".join(self.weights), text, "two numbers, ENERGY DEVIATION")
             for text in self.weights
@@ -70,16 +93,18 @@ class WalkRequest:
         study = GaitStudy(
             model=self.model,
             nodes=_default_nodes(self.model) if self.nodes is None else self.nodes,
-            speed=self.speed,
+            speed=measured_speed if self.speed is None else self.speed,
             subject=subject,
             added_masses=tuple(_added_mass(text) for text in self.added_mass or ()),
             energy_weight=energy_weight,
             deviation_weight=deviation_weight,
             strength=dict(_strength(text) for text in self.strength or ()),
             planar_muscles=self.planar_muscles,
+            muscle_changes=_muscle_changes(self.muscle or ()),
             sdf=None if self.sdf is None else _text(self.sdf),
             multipliers=self.multipliers,
             limits=tuple(_limit(text, self.model) for text in self.limit or ()),
+            disorders=read_disorders({name: getattr(self, name) for name in READERS}),
             **{group: SETTINGS_GROUPS[group](**values) for group, values in constants.items()},
         )
         if self.reference is not None:
@@ -87,8 +112,17 @@ class WalkRequest:
         guess = None if self.guess is None else load_gait(self.guess)
         if guess is not None:
             check_guess(study, guess)
+        several_starts(self.starts, self.seed)
         study.formulation()  # builds the walker: strengths and weights are judged there
         return study, options, guess
+
+    def _measured_person(self) -> tuple[Subject, float]:
+        """Height, mass and speed of an imported reference, or the usual ones."""
+        if self.reference is None or not is_netcdf(self.reference):
+            return Subject(), _DEFAULT_SPEED
+        subject = read_subject(self.reference) or Subject()
+        kind = self.model.removesuffix("-symmetric")
+        return subject, round(Reference.load(self.reference, kind).speed, 3)
 
 
 def _text(path: str) -> str:
@@ -130,6 +164,17 @@ def _strength(text: str) -> tuple[str, float]:
     return name, _number("--strength", text, value, _STRENGTH)
 
 
+def _muscle_changes(texts: Sequence[str]) -> dict[str, dict[str, float]]:
+    option, changes = "--muscle", {}
+    for text in texts:
+        place, value = _pair(option, text, _CHANGE)
+        name, dot, entry = place.partition(".")
+        if not dot or not name or not entry:
+            raise InvalidInput(option, text, _CHANGE)
+        changes.setdefault(name, {})[entry] = _number(option, text, value, _CHANGE)
+    return changes
+
+
 def _limit(text: str, model: str) -> JointLimit:
     option, kind = "--limit", model.removesuffix("-symmetric")
     name, value = _pair(option, text, _LIMIT)
@@ -158,4 +203,6 @@ def _reference(given: str, study: GaitStudy) -> Reference:
         except UnknownName as error:
             known = (*error.known, "or the path of a CSV file")
             raise UnknownName("--reference", given, known) from None
+    if is_netcdf(given):
+        return dataclasses.replace(Reference.load(given, kind), deviation=deviation)
     return Reference.from_table(given, kind=kind, subject=subject, deviation=deviation)

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import logging
+import math
 import time
 from types import TracebackType
 
 from rich.console import Console
 from rich.live import Live
+from rich.table import Table
 from rich.text import Text
 
 from drakegait.check import CheckReport
 from drakegait.solvers.monitor import Progress
+from drakegait.solvers.outcome import Outcome
 
 PLAIN_WIDTH = 150  # columns where the output is no terminal
 PLAIN_INTERVAL = 5.0  # [s] between lines where the output is no terminal
@@ -98,3 +101,25 @@ class ProgressDisplay:
 def print_report(screen: Console, report: CheckReport) -> None:
     """The table of a check."""
     screen.print(report.table())
+
+
+def print_starts(screen: Console, outcome: Outcome) -> None:
+    """How the solves from several starts ended; nothing if there was one."""
+    if not outcome.starts:
+        return
+    table = Table(title="Starts", box=None)
+    table.add_column("from")
+    table.add_column("ended")
+    for heading in ("f", "E [J/m]", "iterations", "s"):
+        table.add_column(heading, justify="right")
+    for record in outcome.starts:
+        table.add_row(
+            record.start, record.status, f"{record.cost:.4f}", f"{record.energy:.1f}",
+            str(record.iterations), f"{record.wall_time:.1f}",
+        )  # fmt: skip
+    screen.print(table)
+    if not math.isnan(outcome.spread):
+        screen.print(
+            f"Costs of those that converged lie within {100.0 * outcome.spread:.2f} %.",
+            markup=False,
+        )

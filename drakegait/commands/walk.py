@@ -15,7 +15,13 @@ from drakegait.commands.gait_files import (
     write_summary,
 )
 from drakegait.commands.request import WalkRequest
-from drakegait.commands.screen import ProgressDisplay, console, print_report, quiet_drake
+from drakegait.commands.screen import (
+    ProgressDisplay,
+    console,
+    print_report,
+    print_starts,
+    quiet_drake,
+)
 from drakegait.gait import Gait
 from drakegait.solve import solve
 from drakegait.study import GaitStudy
@@ -31,12 +37,14 @@ def walk(request: WalkRequest) -> int:
     screen.print(f"{_who(study)}. Ctrl-C ends with the best gait so far.", markup=False)
     with ProgressDisplay(screen) as display:
         gait = solve(
-            study, guess=guess, options=options, refine=request.refine, report=display.report
-        )
+            study, guess=guess, options=options, refine=request.refine, starts=request.starts,
+            seed=request.seed, report=display.report,
+        )  # fmt: skip
     gait.save(folder / GAIT_FILE)
     write_summary(gait.summary(), folder / SUMMARY_FILE)
     if gait.report is not None:
         print_report(screen, gait.report)
+    print_starts(screen, gait.outcome)
     _print_end(screen, gait)
     files = [GAIT_FILE, SUMMARY_FILE]
     if request.no_pictures:
@@ -53,6 +61,7 @@ def walk(request: WalkRequest) -> int:
 def _who(study: GaitStudy) -> str:
     subject = study.subject
     worn = "".join(f", {item.mass:g} kg on {item.segment}" for item in study.added_masses)
+    worn += "".join(f", {item.describe()}" for item in study.disorders)
     return (
         f"{study.model} walker, {subject.height:g} m, {subject.mass:g} kg{worn}, "
         f"{study.speed:g} m/s, {study.nodes} nodes"

@@ -20,7 +20,6 @@ import numpy as np
 
 from drakegait.program.control_points import LocalLayout
 from drakegait.program.local_state import LocalState
-from drakegait.walker import feet
 
 
 @dataclass
@@ -96,7 +95,7 @@ def no_dependence(num_rows: int, layout: LocalLayout) -> dict[str, np.ndarray]:
     return {
         "coordinates": np.zeros((num_rows, layout.num_coordinates), dtype=bool),
         "forces": np.zeros((num_rows, layout.num_muscles), dtype=bool),
-        "multipliers": np.zeros((num_rows, feet.NUM_ROWS), dtype=bool),
+        "multipliers": np.zeros((num_rows, layout.num_rows), dtype=bool),
         "residuals": np.zeros((num_rows, layout.num_coordinates), dtype=bool),
         "time": np.zeros((num_rows, 4), dtype=bool),
         "placement": np.zeros((num_rows, 5), dtype=bool),
@@ -111,7 +110,7 @@ def eliminate_multipliers(state: LocalState, partials: Partials) -> Partials:
     outer = partials.multipliers
 
     def add(mine: np.ndarray | None, inner: np.ndarray) -> np.ndarray:
-        total = outer @ inner
+        total = outer @ inner[:, : outer.shape[2]]
         return total if mine is None else mine + total
 
     return Partials(
@@ -172,7 +171,8 @@ def chain(
         by_force += partials.f[..., None] * basis[0][:, None, None, :]
         tau += np.einsum("prm,pm->pr", partials.f, state.forces.by_tau[0])
     if partials.multipliers is not None:
-        out[:, :, layout.multipliers : layout.residuals] += partials.multipliers
+        stop = layout.multipliers + partials.multipliers.shape[2]  # may leave out toe torques
+        out[:, :, layout.multipliers : stop] += partials.multipliers
     if partials.residuals is not None:
         out[:, :, layout.residuals :] += partials.residuals
     if partials.stride_time is not None:

@@ -29,6 +29,7 @@ class LocalLayout:
     num_coordinates: int
     num_muscles: int
     width: int
+    num_rows: int = feet.NUM_ROWS  # of contacts; more with torques at the toe
 
     @property
     def forces(self) -> int:
@@ -47,13 +48,13 @@ class LocalLayout:
 
     @property
     def multipliers(self) -> int:
-        """First of the fourteen contact multipliers."""
+        """First of the contact multipliers."""
         return self.placement + 5
 
     @property
     def residuals(self) -> int:
         """First of the residuals of the equations of motion."""
-        return self.multipliers + feet.NUM_ROWS
+        return self.multipliers + self.num_rows
 
     @property
     def size(self) -> int:
@@ -82,7 +83,7 @@ class ControlPoints:
         phases, shares: phase (0..7) and share of it.
         first: first coefficient of the window (unwrapped, may be negative).
         weights: integration weights by the three local events (num, 3).
-        loaded: contact rows with a force (num, 14).
+        loaded: contact rows with a force (num, 14), or (num, 18) with torques at the toe.
         placed: contact rows with a prescribed position (num, 14).
         free_points: contact points that must stay above the ground (num, 4).
         left_prints: footprint of the left foot, 0 or 1.
@@ -117,14 +118,15 @@ class ControlPoints:
     def of(cls, formulation: Formulation) -> ControlPoints:
         """The control points of `formulation`."""
         schedule, planar = formulation.schedule, formulation.planar
+        torques = formulation.contact.toe_torque
         phases, shares = schedule.phases, schedule.shares
         loaded, placed = [], []
         for phase, share in zip(phases, shares, strict=True):
             on_event = share == 0.0
             loaded.append(
-                feet.loaded_rows_at_start(phase, planar)
+                feet.loaded_rows_at_start(phase, planar, torques)
                 if on_event
-                else feet.active_rows(phase, planar)
+                else feet.active_rows(phase, planar, torques)
             )
             placed.append(
                 feet.placed_rows_at_start(phase, planar)
@@ -138,6 +140,7 @@ class ControlPoints:
                 formulation.walker.skeleton.num_coordinates,
                 len(formulation.walker.muscles.names),
                 width,
+                len(loaded[0]),
             ),
             numbers=np.arange(schedule.num_points),
             phases=phases,

@@ -138,7 +138,9 @@ def _on_points(state: LocalState, by_foot: np.ndarray) -> np.ndarray:
     """Values (num, 2, 3) of the feet's forces on the multipliers of heel and toe (num, 14)."""
     out = np.zeros((len(by_foot), 2, feet.ROWS_PER_FOOT))
     out[:, :, 0:3] = out[:, :, 3:6] = by_foot
-    return out.reshape(len(by_foot), -1) * state.points.loaded
+    found = np.zeros(state.points.loaded.shape)  # zero for torques at the toe
+    found[:, : feet.NUM_ROWS] = out.reshape(len(by_foot), -1)
+    return found * state.points.loaded
 
 
 def _reactions(values: np.ndarray, weights: np.ndarray) -> np.ndarray:

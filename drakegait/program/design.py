@@ -150,23 +150,27 @@ def _placement(formulation: Formulation) -> Block:
 
 
 def _multipliers(formulation: Formulation, points: ControlPoints) -> Block:
-    shape = (points.num, feet.NUM_ROWS)
+    shape = points.loaded.shape
     loaded = points.loaded if formulation.lifted else np.zeros(shape, dtype=bool)
     index = np.full(shape, -1)
     index[loaded] = np.arange(loaded.sum())
-    size = np.full(feet.NUM_ROWS, _FORCE_SHARE * formulation.body_weight)
+    num = shape[1]
+    size = np.full(num, _FORCE_SHARE * formulation.body_weight)
     size[list(feet.YAW_ROWS)] = _YAW_MOMENT
-    lower = np.full(feet.NUM_ROWS, -np.inf)
+    lower, upper = np.full(num, -np.inf), np.full(num, np.inf)
     lower[list(feet.VERTICAL_ROWS)] = 0.0  # the ground only pushes (item 3)
+    size[feet.NUM_ROWS :] = _YAW_MOMENT
+    upper[feet.NUM_ROWS :] = formulation.contact.toe_torque_limit
+    lower[feet.NUM_ROWS :] = -formulation.contact.toe_torque_limit
     return Block(
         Affine(index, np.ones(shape), np.zeros(shape)),
         np.broadcast_to(size, shape),
         np.broadcast_to(lower, shape),
-        np.full(shape, np.inf),
+        np.broadcast_to(upper, shape),
         [
             f"contact force {name} | control point {k}"
             for k in range(points.num)
-            for name in feet.ROW_NAMES
+            for name in (*feet.ROW_NAMES, *feet.TORQUE_NAMES)[:num]
         ],
     )
 
@@ -178,10 +182,12 @@ def _residuals(formulation: Formulation, points: ControlPoints) -> Block:
     if not formulation.lifted:
         affine = Affine(np.full(shape, -1), np.ones(shape), np.zeros(shape))
     size = np.broadcast_to(formulation.row_tolerances, shape)
+    bounded = formulation.variants.eom_form == "components"
+    bound = size if bounded else np.full(shape, np.inf)
     return Block(
         affine,
         size,
-        -size,
-        size,
+        -bound,
+        bound,
         [f"residual {name} | control point {k}" for k in range(points.num) for name in names],
     )

@@ -41,7 +41,7 @@ class EquationsOfMotion(DenseRows):
         masks = no_dependence(num, points.layout)
         masks["coordinates"][:] = walker.coupling
         masks["forces"][:] = walker.muscles.moment_arms.T != 0.0
-        masks["multipliers"][:] = _loads(walker.coordinate_names)
+        masks["multipliers"][:] = _loads(walker.coordinate_names)[:, : points.layout.num_rows]
         if formulation.lifted:
             masks["residuals"][range(num), range(num)] = True
         masks["time"][:, [0, 2, 3]] = True
@@ -72,10 +72,12 @@ class EquationsOfMotion(DenseRows):
 
 def _loads(names: tuple[str, ...]) -> np.ndarray:
     """Which contact row loads which coordinate: the trunk's and its own leg's."""
-    mask = np.ones((len(names), feet.NUM_ROWS), dtype=bool)
+    side = np.array([row.split()[0][-2:] for row in (*feet.ROW_NAMES, *feet.TORQUE_NAMES)])
+    mask = np.ones((len(names), len(side)), dtype=bool)
     for i, name in enumerate(names):
-        if name.endswith("_r"):
-            mask[i, feet.ROWS_PER_FOOT :] = False
-        if name.endswith("_l"):
-            mask[i, : feet.ROWS_PER_FOOT] = False
+        if name[-2:] in ("_r", "_l"):
+            mask[i] = side == name[-2:]
+        else:
+            # A torque has no share in the force that moves the trunk.
+            mask[i, feet.NUM_ROWS :] = name not in ("hat_x", "hat_y", "hat_z")
     return mask

@@ -7,16 +7,24 @@ are equivalent to (docs/formulation.md 2.8)
 
 which need no square root. Activations follow from the muscle forces and the
 motion by inverting the contraction dynamics.
+
+A muscle that cannot be switched off has the lower bound u >= m instead. Since
+a' grows with u, it is a' >= (m - a)(t_1 m + t_2), and that is a mean of the two
+left-hand sides above,
+
+    (1 - m) [a' + a/t_d] + m [a' - (1 - a)/t_a] >= -m (1 - m) t_1,  t_1 = 1/t_a - 1/t_d.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from drakegait.errors import InvalidInput
 from drakegait.program.control_points import ControlPoints
 from drakegait.program.formulation import Formulation
 from drakegait.program.local_rows import LocalRows
 from drakegait.program.local_state import LocalState
+from drakegait.walker.walker import Walker
 
 _TYPICAL_RATE = 10.0  # [1/s] of activation, about 1/t_d
 
@@ -77,6 +85,13 @@ class Excitation(LocalRows):
         self.scale = np.full(num, _TYPICAL_RATE)
         self.units = ("1/s",) * num
         self.lower = np.where(np.arange(num) % 2 == 0, 0.0, -np.inf)
+        self._mixed = bool(formulation.walker.lowest_excitation.any())
+        if self._mixed:
+            law = formulation.walker.muscle_functions.settings.activation_dynamics
+            if law != "corrected":
+                allowed = "'corrected' where muscles cannot be switched off"
+                raise InvalidInput("activation_dynamics", law, allowed)
+            self.lower[::2] = -_lowest_rates(formulation.walker) / _TYPICAL_RATE
         self.upper = np.where(np.arange(num) % 2 == 0, np.inf, 0.0)
         self.applies = np.ones((points.num, num), dtype=bool)
         self._chain = MuscleChain(formulation, points)
@@ -103,11 +118,15 @@ class Excitation(LocalRows):
         )
 
     def values(self, state: LocalState) -> np.ndarray:
-        return state.muscle_values[..., :2].reshape(state.points.num, -1) / _TYPICAL_RATE
+        values = state.muscle_values[..., :2]
+        if self._mixed:
+            values = _mix(self.formulation.walker, values)
+        return values.reshape(state.points.num, -1) / _TYPICAL_RATE
 
     def jacobian(self, state: LocalState) -> np.ndarray:
         num = state.points.num
         slopes = state.muscles[1][:, :, :2, :] / _TYPICAL_RATE
+        slopes = excitation_rows(self.formulation.walker, slopes)
         force, length = self._chain.windows(state, slopes)
         spans = -self._chain.arm_of_span[:, None, None] * length[:, self._chain.muscle_of_span]
         tau, stride_time = self._chain.timing(state, slopes)
@@ -116,3 +135,35 @@ class Excitation(LocalRows):
         return np.concatenate(
             [force.reshape(num, -1), spans.reshape(num, -1), time.reshape(num, -1)], axis=1
         )
+
+
+def _mix(walker: Walker, values: np.ndarray) -> np.ndarray:
+    """The rows (..., num_muscles, 2) with the lower one for u >= m."""
+    share = walker.lowest_excitation
+    lower = (1.0 - share) * values[..., 0] + share * values[..., 1]
+    return np.stack([lower, values[..., 1]], axis=-1)
+
+
+def excitation_rows(walker: Walker, slopes: np.ndarray) -> np.ndarray:
+    """Slopes (num, num_muscles, 2, 6) of the rows from those of the two left-hand sides."""
+    if not walker.lowest_excitation.any():
+        return slopes
+    return np.moveaxis(_mix(walker, np.moveaxis(slopes, 3, 1)), 1, 3)
+
+
+def _lowest_rates(walker: Walker) -> np.ndarray:
+    """m (1 - m) t_1 (num_muscles,) [1/s]."""
+    constants, share = walker.muscle_functions.constants, walker.lowest_excitation
+    return share * (1.0 - share) * (
+        1.0 / constants.time_activation - 1.0 / constants.time_deactivation
+    )
+
+
+def excitation_weights(walker: Walker, weights: np.ndarray) -> np.ndarray:
+    """Multipliers of the rows as weights of the two left-hand sides (num, 2 num_muscles)."""
+    share = walker.lowest_excitation
+    if not share.any():
+        return weights
+    lower, upper = weights[:, 0::2], weights[:, 1::2]
+    mixed = np.stack([(1.0 - share) * lower, share * lower + upper], axis=-1)
+    return mixed.reshape(len(weights), -1)

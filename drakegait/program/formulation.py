@@ -13,10 +13,12 @@ from functools import cached_property
 import numpy as np
 
 from drakegait.errors import InvalidInput
+from drakegait.program.variants import Variants
 from drakegait.reference.reference import Reference
 from drakegait.settings import Settings, quantity
 from drakegait.transcription.schedule import Schedule
 from drakegait.transcription.splines import PeriodicQuintic
+from drakegait.walker.disorders import Asymmetry, Pain
 from drakegait.walker.feet import ContactSettings
 from drakegait.walker.walker import Walker
 
@@ -74,6 +76,9 @@ class Formulation:
         tolerances, contact: see there.
         limits: optional joint limits.
         lifted: contact multipliers as variables (True) or by eq. (17) (False).
+        variants: forms of the statements.
+        asymmetries: ratios of steps or stances that the walk must have.
+        pains: loads that it spares.
         event_centres: fractions of the cycle (8,) about which the events may move.
         event_reach: largest move of an event [fraction of the cycle].
     """
@@ -90,6 +95,9 @@ class Formulation:
     contact: ContactSettings
     limits: tuple[JointLimit, ...] = ()
     lifted: bool = True
+    variants: Variants = Variants()
+    asymmetries: tuple[Asymmetry, ...] = ()
+    pains: tuple[Pain, ...] = ()
     event_centres: tuple[float, ...] = ()
     event_reach: float = 0.045
 

@@ -12,20 +12,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from drakegait.program.asymmetry import AsymmetryRows
 from drakegait.program.control_points import ControlPoints
 from drakegait.program.design import PHASE_DURATIONS, design_vector
 from drakegait.program.equations_of_motion import EquationsOfMotion
 from drakegait.program.excitation import Excitation
 from drakegait.program.foot_contact import Clearance, FootContact
 from drakegait.program.formulation import Formulation
-from drakegait.program.ground_forces import FreeMoment, Friction, NormalForce
+from drakegait.program.ground_forces import FreeMoment, Friction, NormalForce, ToeTorque
 from drakegait.program.joint_limits import JointLimits
+from drakegait.program.largest_residuals import LargestResiduals
 from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
+from drakegait.program.load_penalty import load_penalties
 from drakegait.program.local_costs import Deviation, LocalCost, MetabolicCost
 from drakegait.program.local_rows import LocalRows
 from drakegait.program.local_state import LocalState
+from drakegait.program.selection import local_variables
+from drakegait.program.stride_rows import PeriodicEnds, StrideRows
 from drakegait.program.timing import TimingRows
-from drakegait.transcription.design_vector import Affine, DesignValues, DesignVector
+from drakegait.transcription.design_vector import DesignValues
 from drakegait.walker import feet
 
 
@@ -52,6 +57,7 @@ class GaitProgram:
         design: the unknowns.
         constraints, costs: what holds and what is minimised at each control point.
         timing: the few rows that belong to no control point.
+        stride_rows: rows of the stride as a whole that variants of the formulation add.
         smoothing: width of the rounded corners of the energy model, 1 = docs/formulation.md 1.6.
     """
 
@@ -60,25 +66,17 @@ class GaitProgram:
         self.points = ControlPoints.of(formulation)
         self.design = design_vector(formulation, self.points)
         self.smoothing = 1.0
-        kinds: list[type[LocalRows]] = [
-            EquationsOfMotion, FootContact, Clearance, Friction, Excitation,
-        ]  # fmt: skip
-        if formulation.lifted:
-            kinds.insert(1, LeastSquaresMultipliers)
-        if not formulation.planar:
-            kinds.append(FreeMoment)
-        if not formulation.lifted:
-            kinds.append(NormalForce)
-        if formulation.limits:
-            kinds.append(JointLimits)
+        kinds = self._laws()
         self.constraints = [kind(formulation, self.points) for kind in kinds]
         self.costs: list[LocalCost] = []
         if formulation.energy_weight > 0.0:
             self.costs.append(MetabolicCost(formulation, self.points))
         if formulation.deviation_weight > 0.0:
             self.costs.append(Deviation(formulation, self.points))
+        self.costs += load_penalties(formulation, self.points)
         self.timing = TimingRows(formulation, self.design, PHASE_DURATIONS)
-        self.selection = self._select()
+        self.selection = local_variables(formulation, self.points, self.design)
+        self.stride_rows = self._stride_rows()
         self._number_rows()
         self._number_entries()
         self._cached: tuple[np.ndarray, float, LocalState] | None = None
@@ -119,45 +117,43 @@ class GaitProgram:
                     for name, holds in zip(constraint.row_names, applies, strict=True)
                     if holds
                 ]
-        return names + self.timing.names
+        return names + self.timing.names + [n for rows in self.stride_rows for n in rows.names]
 
     # Assembly ----------------------------------------------------------------------------
 
-    def _select(self) -> Affine:
-        """The local variables of all control points from the design vector."""
-        points, num = self.points, self.points.num
-        width, intervals = points.layout.width, self.formulation.splines.num_intervals
-        window = (points.first[:, None] + np.arange(width)) % intervals
-        events = self._local_events()
-        parts = []
-        for name in DesignVector.ORDER:
-            full = self.design.selection(name)
-            if name in ("coordinates", "forces"):
-                take = lambda a: a[:, window].transpose(1, 0, 2).reshape(num, -1)  # noqa: E731
-                parts.append(Affine(take(full.index), take(full.factor), take(full.constant)))
-            elif name == "timing":
-                which, shift = events
-                constant = full.constant[which] + shift
-                parts.append(Affine(full.index[which], full.factor[which], constant))
-            elif name == "placement":
-                parts.append(Affine(*(np.tile(a, (num, 1)) for a in
-                                      (full.index, full.factor, full.constant))))  # fmt: skip
-            else:
-                parts.append(full)
-        return Affine(
-            *(np.concatenate([getattr(part, field) for part in parts], axis=1)
-              for field in ("index", "factor", "constant"))
-        )  # fmt: skip
+    def _laws(self) -> list[type[LocalRows]]:
+        """What holds at each control point, in the order of the rows."""
+        formulation = self.formulation
+        kinds: list[type[LocalRows]] = [
+            EquationsOfMotion, FootContact, Clearance, Friction, Excitation,
+        ]  # fmt: skip
+        if formulation.lifted:
+            kinds.insert(1, LeastSquaresMultipliers)
+        elif formulation.variants.eom_form == "maximum":
+            kinds.remove(EquationsOfMotion)
+        if not formulation.planar:
+            kinds.append(FreeMoment)
+        if not formulation.lifted:
+            kinds.append(NormalForce)
+            if formulation.contact.toe_torque:
+                kinds.append(ToeTorque)
+        if formulation.limits:
+            kinds.append(JointLimits)
+        return kinds
 
-    def _local_events(self) -> tuple[np.ndarray, np.ndarray]:
-        """Positions in the timing block of T and the local events, and their shifts."""
-        phases, num = self.points.phases, self.formulation.schedule.num_phases
-        end = num / feet.NUM_PHASES
-        before = np.where(phases == 0, num, phases)  # theta of the previous phase's start
-        which = np.stack([0 * phases, before, phases + 1, phases + 2], axis=1)
-        shift = np.zeros(which.shape)
-        shift[phases == 0, 1] = -end
-        return which, shift
+    def _stride_rows(self) -> list[StrideRows]:
+        """Rows of variants of the formulation and of unequal steps; none by default."""
+        rows: list[StrideRows] = []
+        if self.formulation.asymmetries:
+            rows.append(AsymmetryRows(self.formulation, self.design))
+        variants = self.formulation.variants
+        if variants.periodicity == "eq14":
+            rows.append(PeriodicEnds(self.formulation, self.design))
+        if variants.eom_form == "maximum":
+            rows.append(
+                LargestResiduals(self.formulation, self.points, self.design, self.selection)
+            )
+        return rows
 
     def _number_rows(self) -> None:
         self.row_numbers, lower, upper, scale, units = [], [], [], [], []
@@ -173,12 +169,16 @@ class GaitProgram:
             scale.append(constraint.scale[columns])
             units += [constraint.units[column] for column in columns]
             total += count
-        lower.append(self.timing.lower)
-        upper.append(self.timing.upper)
-        scale.append(self.timing.scale)
-        self.first_timing_row = total
-        self.lower, self.upper = np.concatenate(lower), np.concatenate(upper)
-        self.row_scale, self.row_units = np.concatenate(scale), units + self.timing.units
+        self.first_timing_row, self.first_stride_rows = total, []
+        total += len(self.timing.names)
+        for rows in self.stride_rows:
+            self.first_stride_rows.append(total)
+            total += len(rows.names)
+        whole = [self.timing, *self.stride_rows]
+        self.lower = np.concatenate(lower + [rows.lower for rows in whole])
+        self.upper = np.concatenate(upper + [rows.upper for rows in whole])
+        self.row_scale = np.concatenate(scale + [rows.scale for rows in whole])
+        self.row_units = units + [unit for rows in whole for unit in rows.units]
 
     def _number_entries(self) -> None:
         """Positions of the Jacobian's entries, and where each local derivative goes."""
@@ -191,9 +191,11 @@ class GaitProgram:
             columns.append(column[kept])
             factors.append(self.selection.factor[:, constraint.columns][kept])
             self._kept.append(np.flatnonzero(kept))
-        rows.append(self.first_timing_row + self.timing.rows)
-        columns.append(self.timing.columns)
-        factors.append(np.ones(len(self.timing.rows)))
+        firsts = [self.first_timing_row, *self.first_stride_rows]
+        for first, more in zip(firsts, [self.timing, *self.stride_rows], strict=True):
+            rows.append(first + more.rows)
+            columns.append(more.columns)
+            factors.append(np.ones(len(more.rows)))
         self._factors = np.concatenate(factors)
         keys = np.concatenate(rows) * self.num_variables + np.concatenate(columns)
         unique, self._entry = np.unique(keys, return_inverse=True)
@@ -247,7 +249,8 @@ class GaitProgram:
         parts = [
             constraint.values(state)[constraint.applies] for constraint in self.constraints
         ]
-        return np.concatenate([*parts, self.timing.values(x)])
+        parts += [self.timing.values(x), *(r.values(x, self.state) for r in self.stride_rows)]
+        return np.concatenate(parts)
 
     def jacobian(self, x: np.ndarray) -> np.ndarray:
         """Entries of the Jacobian at `jacobian_rows`, `jacobian_columns`."""
@@ -256,7 +259,8 @@ class GaitProgram:
             constraint.jacobian(state).ravel()[kept]
             for constraint, kept in zip(self.constraints, self._kept, strict=True)
         ]
-        values = np.concatenate([*parts, self.timing.jacobian(x)]) * self._factors
+        parts += [self.timing.jacobian(x), *(r.jacobian(x, self.state) for r in self.stride_rows)]
+        values = np.concatenate(parts) * self._factors
         if self._distinct:
             return values
         return np.bincount(self._entry, values, self.num_entries)

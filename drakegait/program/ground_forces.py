@@ -10,7 +10,7 @@ N = N_A + N_B the vertical force and F the horizontal force of the whole foot,
 
 Heel and toe of a flat foot share the horizontal force in a way that a rigid
 foot cannot tell, hence the total. With lifted multipliers the normal forces
-are bounds of variables.
+are bounds of variables, and so are the torques at the toe, if the study has them.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ class Friction(DenseRows):
         super().__init__(formulation, points)
         self.scale = np.full(2, formulation.body_weight**2)
         self.lower, self.upper = np.zeros(2), np.full(2, np.inf)
-        by_foot = points.loaded.reshape(points.num, 2, feet.ROWS_PER_FOOT)
+        loaded = points.loaded[:, : feet.NUM_ROWS]
+        by_foot = loaded.reshape(points.num, 2, feet.ROWS_PER_FOOT)
         self.applies = by_foot.any(axis=2)
         masks = no_dependence(2, points.layout)
         for foot in range(2):
@@ -63,7 +64,7 @@ class Friction(DenseRows):
             for axis, factor in enumerate(factors):
                 for row in _foot_rows(foot, axis, 3 + axis):
                     out[:, foot, row] = factor * force[:, foot, axis]
-        return Partials(multipliers=out * state.points.loaded[:, None, :])
+        return Partials(multipliers=out * state.points.loaded[:, None, : feet.NUM_ROWS])
 
 
 class FreeMoment(DenseRows):
@@ -101,13 +102,14 @@ class FreeMoment(DenseRows):
                     contact.patch_radius + np.where(heel_down, length, 0.0)
                 )
                 matrix[:, row, yaw] = sign
-        return matrix * points.loaded[:, None, :]
+        return matrix * points.loaded[:, None, : feet.NUM_ROWS]
 
     def _matrix_at(self, state: LocalState) -> np.ndarray:
         return self._matrix[state.points.numbers]
 
     def values(self, state: LocalState) -> np.ndarray:
-        return np.einsum("prk,pk->pr", self._matrix_at(state), state.multipliers) / self.scale
+        multipliers = state.multipliers[:, : feet.NUM_ROWS]
+        return np.einsum("prk,pk->pr", self._matrix_at(state), multipliers) / self.scale
 
     def partials(self, state: LocalState) -> Partials:
         return Partials(multipliers=self._matrix_at(state))
@@ -136,4 +138,30 @@ class NormalForce(DenseRows):
     def partials(self, state: LocalState) -> Partials:
         out = np.zeros((state.points.num, 4, feet.NUM_ROWS))
         out[:, range(4), self._rows] = 1.0
+        return Partials(multipliers=out)
+
+
+class ToeTorque(DenseRows):
+    """Torques at the toe of the foot that stands alone, by eq. (17), as rows [their limit]."""
+
+    kind = "toe torque"
+    row_names = feet.TORQUE_NAMES
+    units = ("N m",) * len(row_names)
+
+    def __init__(self, formulation: Formulation, points: ControlPoints):
+        super().__init__(formulation, points)
+        num, self._rows = self.num_rows, list(range(feet.NUM_ROWS, feet.NUM_ROWS_WITH_TORQUES))
+        self.scale = np.full(num, formulation.contact.toe_torque_limit)
+        self.lower, self.upper = -np.ones(num), np.ones(num)
+        self.applies = points.loaded[:, self._rows]
+        masks = no_dependence(num, points.layout)
+        masks["multipliers"][range(num), self._rows] = True
+        self._declare(Pattern(**masks))
+
+    def values(self, state: LocalState) -> np.ndarray:
+        return state.multipliers[:, self._rows] / self.scale
+
+    def partials(self, state: LocalState) -> Partials:
+        out = np.zeros((state.points.num, self.num_rows, state.points.layout.num_rows))
+        out[:, range(self.num_rows), self._rows] = 1.0
         return Partials(multipliers=out)

@@ -26,16 +26,16 @@ _PRIOR = 0.3  # weight of the ground reactions' distance, in units of 0.3 body w
 
 def guess_from_reference(program: GaitProgram) -> np.ndarray:
     """Design vector of the reference walk at the wanted speed, with fitted forces."""
-    x = program.design.pack(_reference_values(program))
-    return _fit_forces(program, np.clip(x, program.design.lower, program.design.upper))
+    x = program.design.pack(reference_values(program))
+    return fit_forces(program, np.clip(x, program.design.lower, program.design.upper))
 
 
 def guess_from_values(program: GaitProgram, values: DesignValues) -> np.ndarray:
     """Design vector of an earlier gait; contact forces are fitted if their number differs."""
     design = program.design
-    if values.multipliers.shape == (program.points.num, feet.NUM_ROWS):
+    if values.multipliers.shape == program.points.loaded.shape:
         return np.clip(design.pack(values), design.lower, design.upper)
-    blank = np.zeros((program.points.num, feet.NUM_ROWS))
+    blank = np.zeros(program.points.loaded.shape)
     no_residuals = np.zeros((program.points.num, program.points.layout.num_coordinates))
     x = design.pack(
         DesignValues(
@@ -43,10 +43,11 @@ def guess_from_values(program: GaitProgram, values: DesignValues) -> np.ndarray:
             values.events, values.placement, blank, no_residuals,
         )
     )  # fmt: skip
-    return _fit_forces(program, np.clip(x, design.lower, design.upper), keep_muscles=True)
+    return fit_forces(program, np.clip(x, design.lower, design.upper), keep_muscles=True)
 
 
-def _reference_values(program: GaitProgram) -> DesignValues:
+def reference_values(program: GaitProgram) -> DesignValues:
+    """The reference walk at the wanted speed with its own ground reactions and silent muscles."""
     formulation = program.formulation
     reference, splines = formulation.reference, formulation.splines
     placement = reference.foot_placement
@@ -77,18 +78,24 @@ def _reference_values(program: GaitProgram) -> DesignValues:
 def _reference_multipliers(program: GaitProgram, reactions: np.ndarray) -> np.ndarray:
     """Contact forces with the reference's ground reactions, heel and toe sharing alike."""
     multipliers = np.zeros((program.points.num, 2, feet.ROWS_PER_FOOT))
-    loaded = program.points.loaded.reshape(program.points.num, 2, feet.ROWS_PER_FOOT)
+    loaded = program.points.loaded[:, : feet.NUM_ROWS].reshape(multipliers.shape)
     for axis in range(3):
         both = loaded[:, :, axis] & loaded[:, :, axis + 3]
         for offset in (axis, axis + 3):
             multipliers[:, :, offset] = np.where(
                 loaded[:, :, offset], reactions[:, :, axis] * np.where(both, 0.5, 1.0), 0.0
             )
-    return multipliers.reshape(program.points.num, feet.NUM_ROWS)
+    found = np.zeros(program.points.loaded.shape)
+    found[:, : feet.NUM_ROWS] = multipliers.reshape(program.points.num, feet.NUM_ROWS)
+    return found
 
 
-def _fit_forces(program: GaitProgram, x: np.ndarray, keep_muscles: bool = False) -> np.ndarray:
+def fit_forces(program: GaitProgram, x: np.ndarray, keep_muscles: bool = False) -> np.ndarray:
     """Improve muscle and contact forces in `x` by one quadratic program."""
+    if not isinstance(program.constraints[0], EquationsOfMotion):
+        # The same unknowns under eq. (28) have the rows that are fitted here.
+        variants = program.formulation.variants.replace(eom_form="components")
+        program = GaitProgram(replace(program.formulation, variants=variants))
     design = program.design
     forces = np.zeros(design.num_variables, dtype=bool)
     forces[design.offsets["forces"] : design.offsets["timing"]] = not keep_muscles

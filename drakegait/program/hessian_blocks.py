@@ -15,7 +15,6 @@ import numpy as np
 
 from drakegait.program.excitation import MuscleChain
 from drakegait.program.local_state import LocalState
-from drakegait.walker import feet
 
 NUM_TIME = 4  # stride time and three events
 NUM_LATE = NUM_TIME + 5  # and the placement
@@ -54,9 +53,9 @@ class HessianBlocks:
         self.late_c = np.zeros((num, NUM_LATE, n, width))
         self.late_f = np.zeros((num, NUM_LATE, m, width))
         self.late = np.zeros((num, NUM_LATE, NUM_LATE))
-        self.multiplier_c = np.zeros((num, feet.NUM_ROWS, n, width))
-        self.multiplier_time = np.zeros((num, feet.NUM_ROWS, NUM_TIME))
-        self.multipliers = np.zeros((num, feet.NUM_ROWS))
+        self.multiplier_c = np.zeros((num, layout.num_rows, n, width))
+        self.multiplier_time = np.zeros((num, layout.num_rows, NUM_TIME))
+        self.multipliers = np.zeros((num, layout.num_rows))
         self.heel_toe = np.zeros((num, len(_HEELS)))
         self.residual_c = np.zeros((num, n, n, width))
         self.residual_time = np.zeros((num, n, NUM_TIME))

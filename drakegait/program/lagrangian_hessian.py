@@ -9,6 +9,8 @@ fewer iterations than with quasi-Newton updates, which may also end at worse opt
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from drakegait.errors import InvalidInput
@@ -19,15 +21,25 @@ from drakegait.program.cost_hessian import (
     add_friction,
     power_weight,
 )
-from drakegait.program.excitation import MuscleChain
+from drakegait.program.excitation import Excitation, MuscleChain
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.hessian_blocks import HessianBlocks, places
 from drakegait.program.hessian_chain import Directions, carry
+from drakegait.program.load_penalty import LoadPenalty
 from drakegait.program.local_costs import Deviation, MetabolicCost
 from drakegait.program.local_rows import LocalRows
 from drakegait.program.local_state import LocalState
-from drakegait.program.physical_hessian import LawWeights, physical_hessian
+from drakegait.program.physical_hessian import LawWeights, PhysicalHessian, physical_hessian
 from drakegait.walker.dynamics_curvature import DynamicsCurvature
+
+
+@dataclass(frozen=True)
+class LocalCurvature:
+    """Second derivatives at the control points, and what they were made of."""
+
+    blocks: HessianBlocks
+    directions: Directions
+    physical: PhysicalHessian
 
 
 class LagrangianHessian:
@@ -46,6 +58,7 @@ class LagrangianHessian:
         self._program = program
         self._dynamics = DynamicsCurvature(program.formulation.walker.skeleton)
         self._spans = MuscleChain(program.formulation, program.points)
+        self._penalties = [cost for cost in program.costs if isinstance(cost, LoadPenalty)]
         self._numbers = {type(item): k for k, item in enumerate(program.constraints)}
         self._locate()
 
@@ -54,23 +67,57 @@ class LagrangianHessian:
         """Number of entries of the lower triangle that may differ from zero."""
         return len(self.rows)
 
-    def values(self, x: np.ndarray, multipliers: np.ndarray, objective: float) -> np.ndarray:
+    def values(
+        self,
+        x: np.ndarray,
+        multipliers: np.ndarray,
+        objective: float,
+        stiffness: np.ndarray | None = None,
+    ) -> np.ndarray:
         """Entries at (`rows`, `columns`).
 
         Args:
             x: design vector.
             multipliers: lambda of the rows (num_constraints,).
             objective: factor sigma of the cost.
+            stiffness: weights w of the rows (num_constraints,) in an interior-point method; for
+                the excitation rows g, w g_x^T g_x is added at no cost. Others are not read.
         """
-        program = self._program
-        local = self._local(program.state(x), multipliers, objective).ravel()[self._kept]
+        return self.values_and_blocks(x, multipliers, objective, stiffness)[0]
+
+    def values_and_blocks(
+        self,
+        x: np.ndarray,
+        multipliers: np.ndarray,
+        objective: float,
+        stiffness: np.ndarray | None = None,
+    ) -> tuple[np.ndarray, LocalCurvature]:
+        """As `values`, with the blocks at the control points that the entries are made of."""
+        program, state = self._program, self._program.state(x)
+        curvature = self.local_curvature(state, multipliers, objective, stiffness)
+        local = self._local(curvature, objective).ravel()[self._kept]
         timing = program.timing.curvature(multipliers[program.first_timing_row :])
         entries = np.concatenate([local * self._factor, timing])
-        return np.bincount(self._entry, entries, self.num_entries)
+        return np.bincount(self._entry, entries, self.num_entries), curvature
 
-    def _local(self, state: LocalState, multipliers: np.ndarray, objective: float) -> np.ndarray:
+    def _local(self, curvature: LocalCurvature, objective: float) -> np.ndarray:
         """Second derivatives by local variables (num, entries)."""
+        state, entries = curvature.blocks.state, curvature.blocks.values()
+        if not self._penalties:
+            return entries
+        penalties = [penalty.curvature(state, objective) for penalty in self._penalties]
+        return np.concatenate([entries, *penalties], axis=1)
+
+    def local_curvature(
+        self,
+        state: LocalState,
+        multipliers: np.ndarray,
+        objective: float,
+        stiffness: np.ndarray | None = None,
+    ) -> LocalCurvature:
+        """Second derivatives at the control points; see `values`."""
         weights = self._weights(multipliers)
+        springs = None if stiffness is None else self._weights(stiffness, power=2)(Excitation)
         costs = {type(cost): cost for cost in self._program.costs}
         blocks = HessianBlocks(state)
         directions = Directions.of(state, blocks)
@@ -80,16 +127,15 @@ class LagrangianHessian:
             add_energy_weights(
                 blocks, costs[MetabolicCost], directions, self._spans, objective
             )
-        carry(
-            blocks, physical_hessian(state, self._dynamics, weights, power), directions, self._spans
-        )
+        physical = physical_hessian(state, self._dynamics, weights, power, springs)
+        carry(blocks, physical, directions, self._spans)
         if Deviation in costs:
             add_deviation(blocks, costs[Deviation], objective)
         add_friction(blocks, weights)
         add_footprints(blocks, weights)
-        return blocks.values()
+        return LocalCurvature(blocks, directions, physical)
 
-    def _weights(self, multipliers: np.ndarray) -> LawWeights:
+    def _weights(self, multipliers: np.ndarray, power: int = 1) -> LawWeights:
         program, padded = self._program, np.append(multipliers, 0.0)
 
         def of(kind: type[LocalRows]) -> np.ndarray | None:
@@ -97,7 +143,7 @@ class LagrangianHessian:
             if number is None:
                 return None
             # A row that does not hold somewhere has the number -1: the zero at the end.
-            return padded[program.row_numbers[number]] / program.constraints[number].scale
+            return padded[program.row_numbers[number]] / program.constraints[number].scale**power
 
         return of
 
@@ -106,6 +152,8 @@ class LagrangianHessian:
     def _locate(self) -> None:
         program = self._program
         left, right = places(self._probe_state(), self._spans)
+        left = np.concatenate([left, *(penalty.pairs[0] for penalty in self._penalties)])
+        right = np.concatenate([right, *(penalty.pairs[1] for penalty in self._penalties)])
         index, factor = program.selection.index, program.selection.factor
         row, column = index[:, left], index[:, right]
         kept = (row >= 0) & (column >= 0) & self._possible()
@@ -135,4 +183,5 @@ class LagrangianHessian:
     def _possible(self) -> np.ndarray:
         """Entries that can differ from zero, found with random weights."""
         weights = np.random.default_rng(1).uniform(0.5, 1.5, self._program.num_constraints)
-        return self._local(self._probe_state(), weights, 1.0) != 0.0
+        curvature = self.local_curvature(self._probe_state(), weights, 1.0)
+        return self._local(curvature, 1.0) != 0.0

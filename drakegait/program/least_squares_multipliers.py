@@ -28,16 +28,16 @@ class LeastSquaresMultipliers(DenseRows):
 
     def __init__(self, formulation: Formulation, points: ControlPoints):
         super().__init__(formulation, points)
-        self.row_names = feet.ROW_NAMES
-        self.scale = np.full(feet.NUM_ROWS, formulation.tolerances.force_tolerance)
-        self.units = tuple(
-            "N m" if row in feet.YAW_ROWS else "N" for row in range(feet.NUM_ROWS)
-        )
-        self.lower = self.upper = np.zeros(feet.NUM_ROWS)
+        num = points.layout.num_rows
+        self.row_names = (*feet.ROW_NAMES, *feet.TORQUE_NAMES)[:num]
+        self.scale = np.full(num, formulation.tolerances.force_tolerance)
+        turns = (*feet.YAW_ROWS, *feet.ROLL_ROWS, *feet.PITCH_ROWS)
+        self.units = tuple("N m" if row in turns else "N" for row in range(num))
+        self.lower = self.upper = np.zeros(num)
         self.applies = points.loaded
-        masks = no_dependence(feet.NUM_ROWS, points.layout)
-        for row in range(feet.NUM_ROWS):
-            other = "_l" if row < feet.ROWS_PER_FOOT else "_r"
+        masks = no_dependence(num, points.layout)
+        for row, row_name in enumerate(self.row_names):
+            other = "_l" if row_name.split()[0].endswith("_r") else "_r"
             for i, name in enumerate(formulation.walker.coordinate_names):
                 masks["residuals"][row, i] = not name.endswith(other)
                 translates = name in ("hat_x", "hat_y", "hat_z")

@@ -171,7 +171,7 @@ class Deviation(LocalCost):
         tau = (by_motion * motion_slope).sum(axis=1) + (by_force * force_slope).sum(axis=(1, 2))
         both_points = np.zeros((num, 2, feet.ROWS_PER_FOOT))
         both_points[:, :, 0:3] = both_points[:, :, 3:6] = by_force
-        multipliers = both_points.reshape(num, -1) * state.points.loaded
+        multipliers = both_points.reshape(num, -1) * state.points.loaded[:, : feet.NUM_ROWS]
         share, period = state.share_of_cycle, state.stride_time[:, 0]
         factor = weight * share * period
         rate = self.rate(state)

@@ -151,7 +151,7 @@ class LocalState:
         """Values of the contact rows (num, 14) and their gradients (num, 14, num_coordinates)."""
         skeleton = self.formulation.walker.skeleton
         values = np.zeros((self.points.num, feet.NUM_ROWS))
-        gradients = self.contact_jacobian.copy()
+        gradients = self.contact_jacobian[:, : feet.NUM_ROWS].copy()
         columns = [row for row in range(feet.NUM_ROWS) if row not in feet.YAW_ROWS]
         values[:, columns] = skeleton.contact_points(self.q).reshape(self.points.num, -1)
         if not self.formulation.planar:
@@ -174,7 +174,7 @@ class LocalState:
         """Contact forces and moments (num, 14): variables, or lambda* of eq. (17)."""
         if self.formulation.lifted:
             return np.where(self.points.loaded, self._multipliers, 0.0)
-        multipliers = np.zeros((self.points.num, feet.NUM_ROWS))
+        multipliers = np.zeros(self.points.loaded.shape)
         for k, needed in enumerate(self.unloaded - self.muscle_torques):
             rows = self.points.loaded[k]
             jacobian = self.contact_jacobian[k, rows]
@@ -226,11 +226,11 @@ class LocalState:
         because C e = 0 at lambda*; dC e is the change of the contact velocities at the joint
         velocity e.
         """
-        num, size = self.points.num, self.q.shape[1]
+        (num, rows), size = self.points.loaded.shape, self.q.shape[1]
         arms = self.formulation.walker.muscles.moment_arms
         out = MultiplierDerivatives(
-            *(np.zeros((num, feet.NUM_ROWS, size)) for _ in range(3)),
-            np.zeros((num, feet.NUM_ROWS, len(arms))),
+            *(np.zeros((num, rows, size)) for _ in range(3)),
+            np.zeros((num, rows, len(arms))),
         )
         skeleton, dynamics = self.formulation.walker.skeleton, self.dynamics
         for k in range(num):

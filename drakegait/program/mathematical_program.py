@@ -27,6 +27,7 @@ from drakegait.program.gait_program import GaitProgram
 from drakegait.program.local_costs import LocalCost
 from drakegait.program.local_rows import LocalRows
 from drakegait.program.local_state import LocalState
+from drakegait.program.stride_rows import StrideRows
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,8 @@ class DrakeProgram:
     Attributes:
         program: to be handed to any of Drake's solvers.
         variables: the scaled design vector.
-        constraints: one binding per control point, then that of the timing rows.
+        constraints: one binding per control point, then that of the timing rows and, in variants,
+            one per kind of rows of the whole stride.
         rows: number in `GaitProgram` of each row of `constraints`, binding by binding.
         costs: one binding per kind.
     """
@@ -68,9 +70,10 @@ def mathematical_program(
         for cost in gait_program.costs
     )
     points = [_PointEvaluator(gait_program, k) for k in range(gait_program.points.num)]
-    timing = _TimingEvaluator(gait_program)
+    stride = [_TimingEvaluator(gait_program)]
+    stride += [_StrideEvaluator(gait_program, rows) for rows in gait_program.stride_rows]
     constraints = tuple(
-        _add_constraint(program, evaluator, variables) for evaluator in (*points, timing)
+        _add_constraint(program, evaluator, variables) for evaluator in (*points, *stride)
     )
     program.AddVisualizationCallback(lambda x: gait_program.state(x), variables)
     first = gait_program.first_timing_row
@@ -198,12 +201,34 @@ class _TimingEvaluator:
     def __call__(self, x: np.ndarray) -> np.ndarray:
         full = np.zeros(self._program.num_variables)
         full[self.index] = x if x.dtype != object else ExtractValue(x)[:, 0]
-        value = self._program.timing.values(full)
+        value = self._value(full)
         if x.dtype != object:
             return value
         jacobian = np.zeros((len(value), len(x)))
-        jacobian[self.rows, self.columns] = self._program.timing.jacobian(full)
+        jacobian[self.rows, self.columns] = self._entries(full)
         return _with_derivatives(x, value, jacobian)
+
+    def _value(self, x: np.ndarray) -> np.ndarray:
+        return self._program.timing.values(x)
+
+    def _entries(self, x: np.ndarray) -> np.ndarray:
+        return self._program.timing.jacobian(x)
+
+
+class _StrideEvaluator(_TimingEvaluator):
+    """Rows of the stride as a whole, of one kind."""
+
+    def __init__(self, program: GaitProgram, rows: StrideRows):
+        self._program, self._stride, self.name = program, rows, rows.kind
+        self.index = np.unique(rows.columns)
+        self.lower, self.upper = rows.lower, rows.upper
+        self.rows, self.columns = rows.rows, np.searchsorted(self.index, rows.columns)
+
+    def _value(self, x: np.ndarray) -> np.ndarray:
+        return self._stride.values(x, self._program.state)
+
+    def _entries(self, x: np.ndarray) -> np.ndarray:
+        return self._stride.jacobian(x, self._program.state)
 
 
 class _CostEvaluator:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.program.equations_of_motion import EquationsOfMotion
-from drakegait.program.excitation import Excitation
+from drakegait.program.excitation import Excitation, excitation_rows, excitation_weights
 from drakegait.program.foot_contact import Clearance, FootContact
 from drakegait.program.joint_limits import JointLimits
 from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
@@ -47,9 +47,16 @@ class PhysicalHessian:
 
 
 def physical_hessian(
-    state: LocalState, curvature: DynamicsCurvature, weights: LawWeights, power: np.ndarray
+    state: LocalState,
+    curvature: DynamicsCurvature,
+    weights: LawWeights,
+    power: np.ndarray,
+    springs: np.ndarray | None = None,
 ) -> PhysicalHessian:
-    """All laws by their multipliers, and the muscles' power by the weight `power` (num,)."""
+    """All laws by their multipliers, and the muscles' power by the weight `power` (num,).
+
+    With `springs` w (num, 2 num_muscles) on the excitation rows g, w g_y^T g_y is added.
+    """
     walker = state.formulation.walker
     balance = weights(EquationsOfMotion)
     contact = weights(FootContact).copy()
@@ -68,7 +75,12 @@ def physical_hessian(
     motion[:, :, 0, :, 2] = blocks.qa
     motion[:, :, 2, :, 0] = np.swapaxes(blocks.qa, 1, 2)
     first = _first_derivatives(state, balance, velocities, contact, weights(JointLimits))
-    muscles, by_muscle = _muscles(state, weights(Excitation), power)
+    excitation = excitation_weights(walker, weights(Excitation))
+    muscles, by_muscle = _muscles(state, excitation, power)
+    if springs is not None:
+        slopes = excitation_rows(walker, state.muscles[1][:, :, :2])
+        stiff = springs.reshape(*slopes.shape[:3], 1) * slopes
+        muscles = muscles + np.swapaxes(slopes, 2, 3) @ stiff
     arms = walker.muscles.moment_arms
     # Muscle lengths are l0 - arms q.
     motion += np.einsum("mi,pmab,mj->piajb", arms, muscles[:, :, 3:, 3:], arms, optimize=True)

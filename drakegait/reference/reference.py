@@ -14,6 +14,7 @@ from drakegait.reference.curves import PeriodicCurves, SampledCurves, SplineCurv
 from drakegait.reference.deviation import SIGMA_INSTANTS, DeviationSettings, sigma, weight
 from drakegait.reference.embedded import embedded_stride
 from drakegait.reference.export import table_columns, write_csv
+from drakegait.reference.netcdf_file import is_netcdf, read_reference, write_subject
 from drakegait.reference.periodicity import fit_periodic
 from drakegait.reference.tables import FORCE_COLUMNS, StrideTable, read_stride
 from drakegait.transcription.foot_placement import FootPlacement
@@ -128,18 +129,35 @@ class Reference:
             deviation=deviation or DeviationSettings(),
         )
 
-    def save(self, path: str | Path, rows: int = 101) -> None:
-        """Write a CSV file that `from_table` reads: a template for measurements of one's own.
+    @classmethod
+    def load(cls, path: str | Path, kind: str | None = None) -> Reference:
+        """A reference from a netCDF file of `save` or of `drakegait import`.
 
-        Coordinates in anatomical signs, degrees and metres, hat_x with the advance; forces in N.
+        Args:
+            kind: `"spatial"` or `"planar"`; default the spatial one, if there is one.
+
+        Raises:
+            BadFile: missing, damaged, foreign, or of another version.
+            UnknownName: the file has no reference of this kind.
+        """
+        return read_reference(path, kind)
+
+    def save(self, path: str | Path, rows: int = 101) -> None:
+        """Write a netCDF file (`.nc`) that `load` reads, or else a CSV file for `from_table`.
+
+        The CSV file is a template for measurements of one's own: coordinates in anatomical signs,
+        degrees and metres, hat_x with the advance; forces in N.
 
         Args:
             path: of the file, replaced if it is there.
-            rows: instants from 0 to 100 % of the stride.
+            rows: of the CSV file, instants from 0 to 100 % of the stride.
 
         Raises:
             BadFile: the file cannot be written.
         """
+        if is_netcdf(path):
+            write_subject(path, (self,), None)
+            return
         write_csv(path, self, table_columns(self, rows, FORCE_COLUMNS))
 
     @property

@@ -31,12 +31,14 @@ class FeetGeometry:
         moves: (2, n) 1 where the coordinate moves the right, the left foot.
         feet: (2,) position of the feet in the bodies of a `Motion`.
         points: (2, 2, 3) heel and toe in the axes of their foot [m].
+        tilts: whether four rows follow, the rotations of both feet about x and y.
     """
 
     inner: np.ndarray
     moves: np.ndarray
     feet: np.ndarray
     points: np.ndarray
+    tilts: bool = False
 
     def contact_points(self, motion: Motion) -> np.ndarray:
         """World positions (..., 2, 2, 3) of heel and toe of both feet [m]."""
@@ -46,7 +48,10 @@ class FeetGeometry:
     def jacobian(self, motion: Motion) -> np.ndarray:
         """Contact Jacobian (..., 14, n)."""
         axes, columns = self._axes_and_columns(motion)
-        return _rows(np.swapaxes(columns, -1, -2), self.moves * axes[..., None, :, 2])
+        rows = _rows(np.swapaxes(columns, -1, -2), self.moves * axes[..., None, :, 2])
+        if not self.tilts:
+            return rows
+        return _with_tilts(rows, self.moves[:, None] * np.swapaxes(axes[..., None, :, :2], -1, -2))
 
     def force_derivative(self, motion: Motion, multipliers: np.ndarray) -> np.ndarray:
         """Derivative (..., n, n) with respect to q of C(q)^T multipliers, these held constant.
@@ -55,7 +60,7 @@ class FeetGeometry:
             multipliers: (..., 14) forces [N] and yaw moments [N m] on the feet.
         """
         axes, columns = self._axes_and_columns(motion)
-        by_foot = multipliers.reshape(*multipliers.shape[:-1], 2, 7)
+        by_foot = multipliers[..., :14].reshape(*multipliers.shape[:-1], 2, 7)
         forces = by_foot[..., :6].reshape(*by_foot.shape[:-1], 2, 3)
         # lambda . (w_i x J_j) = (lambda x w_i) . J_j, summed over the four points
         arms = axes[..., None, None, :, :] @ np.swapaxes(skew(forces), -1, -2)
@@ -65,8 +70,16 @@ class FeetGeometry:
         result = outer + np.swapaxes(strict * pairs, -1, -2)
         # row i, column j: m e_z . (w_j x w_i), j strictly inside of i
         moments = by_foot[..., 6] @ self.moves
-        vertical = _vertical_ofcross(axes)
-        return result + moments[..., :, None] * np.swapaxes(strict * vertical, -1, -2)
+        vertical = _component_of_cross(axes, 2)
+        result = result + moments[..., :, None] * np.swapaxes(strict * vertical, -1, -2)
+        if not self.tilts:
+            return result
+        tilting = multipliers[..., 14:].reshape(*multipliers.shape[:-1], 2, 2)
+        for axis in range(2):
+            moments = tilting[..., axis] @ self.moves
+            across = strict * _component_of_cross(axes, axis)
+            result = result + moments[..., :, None] * np.swapaxes(across, -1, -2)
+        return result
 
     def velocity_derivative(self, motion: Motion, speeds: np.ndarray) -> np.ndarray:
         """Derivative (..., 14, n) with respect to q of C(q) speeds, these held constant.
@@ -83,8 +96,11 @@ class FeetGeometry:
         rate = self.moves[:, None, :, None] * rate
         rate = rate + cross(inward[..., None, None, :, :], columns)
         spin_beyond = strict @ (spin[..., None, :, :] * self.moves[..., None])
-        lifted = cross(axes[..., None, :, :], spin_beyond)[..., 2] * self.moves
-        return _rows(np.swapaxes(rate, -1, -2), lifted)
+        turned = cross(axes[..., None, :, :], spin_beyond)
+        rows = _rows(np.swapaxes(rate, -1, -2), turned[..., 2] * self.moves)
+        if not self.tilts:
+            return rows
+        return _with_tilts(rows, self.moves[:, None] * np.swapaxes(turned[..., :2], -1, -2))
 
     def _axes_and_columns(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
         """Axes (..., n, 3) and velocities (..., 2, 2, n, 3) of the points per unit speed."""
@@ -102,7 +118,13 @@ def _rows(point_rows: np.ndarray, yaw_rows: np.ndarray) -> np.ndarray:
     return np.concatenate([points, yaw_rows[..., None, :]], axis=-2).reshape(*lead, 14, n)
 
 
-def _vertical_ofcross(axes: np.ndarray) -> np.ndarray:
-    """e_z . (w_i x w_j) for all pairs (..., n, n)."""
-    x, y = axes[..., 0], axes[..., 1]
+def _with_tilts(rows: np.ndarray, tilts: np.ndarray) -> np.ndarray:
+    """(..., 14, n) and rotations (..., 2 feet, 2 axes, n) -> (..., 18, n)."""
+    tilts = tilts.reshape(*rows.shape[:-2], 4, rows.shape[-1])
+    return np.concatenate([rows, tilts], axis=-2)
+
+
+def _component_of_cross(axes: np.ndarray, which: int) -> np.ndarray:
+    """e . (w_i x w_j) for all pairs (..., n, n), e the world axis `which`."""
+    x, y = axes[..., (which + 1) % 3], axes[..., (which + 2) % 3]
     return x[..., :, None] * y[..., None, :] - y[..., :, None] * x[..., None, :]

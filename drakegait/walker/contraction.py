@@ -25,6 +25,10 @@ FORCE_VELOCITY_FLOOR_WIDTH = 0.005
 PROJECTION_FLOOR = 0.02
 PROJECTION_FLOOR_WIDTH = 0.005
 EXCITATION_ROOT_WIDTH = 1e-3
+# Velocity [1/s] over which shortening turns into lengthening. There the curvature of force-velocity
+# jumps, hence the slope of the excitation; an optimum in that corner is one at which no Newton
+# step ends. With this width the muscle's force changes by less than 3e-4 of the isometric one.
+TURNING_WIDTH = 0.1
 # Keeps derivatives of roots finite where their argument is exactly 0.
 TINY = 1e-40
 
@@ -187,8 +191,10 @@ def _force_velocity(
     """
     A, B = muscle.a_rel, muscle.b_rel
     gain = settings.f_asympt - 1.0
-    shortening, lengthening = math.fmin(nu, 0.0), math.fmax(nu, 0.0)
-    shortening1 = nu1 * (nu <= 0.0)
+    width = TURNING_WIDTH * guard
+    root = math.sqrt(nu * nu + (width * width + TINY))
+    shortening, lengthening = 0.5 * (nu - root), 0.5 * (nu + root)
+    shortening1 = 0.5 * nu1 * (1.0 - nu / root)
     lengthening1 = nu1 - shortening1
 
     hill = 1.0 / (B - shortening)
@@ -208,14 +214,46 @@ def _force_velocity(
     return floor + above, slope * g1
 
 
+def excitation_bounds(
+    muscle: MuscleConstants, settings: MuscleSettings, a: Any, a1: Any
+) -> tuple[Any, Any]:
+    """Two rates [1/s]: u >= 0 where the first is >= 0, u <= 1 where the second is <= 0.
+
+    As u is monotone in a', its bounds are those of a' at u = 0 and at u = 1.
+    """
+    if settings.activation_dynamics == "printed":
+        t1, t2 = _printed_rates(muscle)
+        return a * t2 - a1, -a1 - (1.0 - a) * (t2 - t1)
+    return a1 + a / muscle.time_deactivation, a1 - (1.0 - a) / muscle.time_activation
+
+
+def _printed_rates(muscle: MuscleConstants) -> tuple[Any, Any]:
+    """t1 and t2 of eq. (C.1) as printed, numbers of s and 1/s taken alike; t1 < 0 < t2 - t1."""
+    t2 = 1.0 / muscle.time_deactivation
+    return 1.0 / (muscle.time_activation - t2), t2
+
+
 def excitation(
-    math: Any, muscle: MuscleConstants, activation: Any, activation_rate: Any, smoothing: Any
+    math: Any,
+    muscle: MuscleConstants,
+    activation: Any,
+    activation_rate: Any,
+    smoothing: Any,
+    law: str = "corrected",
 ) -> Any:
     """Excitation u that makes the activation a change at the rate a'.
 
     The plus root of a' = (u - a)(t1 u + t2), t2 = 1/t_d, t1 = 1/t_a - 1/t_d (He et al. 1991, as
-    in Nagano & Gerritsen 2001, eq. A2), single-valued on 0..1 because t_d <= 2 t_a.
+    in Nagano & Gerritsen 2001, eq. A2), single-valued on 0..1 because t_d <= 2 t_a. The `law`
+    `"printed"` is a' = (u - a)(t1 u - t2) with t1 = 1/(t_a - t2), eq. (C.1) to the letter.
     """
+    if law == "printed":
+        t1, t2 = _printed_rates(muscle)
+        sum_, product = t2 + t1 * activation, activation * t2 - activation_rate
+        # The root near a; the radicand is that of a' = 0, (t2 - t1 a)^2, plus 4 t1 a'.
+        radicand = sum_ * sum_ - 4.0 * t1 * product
+        floor = EXCITATION_ROOT_WIDTH * t2 * t2
+        return 2.0 * product / (sum_ + math.sqrt(positive_part(math, radicand, floor)))
     # Equal time constants make the law linear; a small quadratic part stands in for none.
     t = math.fmax(muscle.time_deactivation / muscle.time_activation - 1.0, 1e-6)
     width = EXCITATION_ROOT_WIDTH * math.fmin(smoothing, 1.0)

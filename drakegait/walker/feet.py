@@ -6,6 +6,11 @@ figure 2) divides the stride, from one right heel strike to the next, into
 eight phases with different bilateral contacts; a foot on the ground may pivot
 about the vertical only with a reaction moment.
 
+A variant of the model (`ContactSettings.toe_torque`) lets the ground also hold the foot that stands
+alone by torques about horizontal axes, as if it acted through the metatarsophalangeal joint: about
+x (roll) in phases 3, 4, 7, 8 and about y (pitch) in 4 and 8, where nothing else can. They come as
+four more rows after the fourteen.
+
 All contact quantities are listed in one fixed order of 14 *contact rows*:
 right foot heel x, y, z, toe x, y, z, yaw, then the left foot likewise. The
 planar walker uses the same list and leaves the y and yaw rows inactive.
@@ -17,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drakegait.settings import Settings, quantity
+from drakegait.settings import Settings, flag, quantity
 
 ROWS_PER_FOOT = 7
 NUM_ROWS = 2 * ROWS_PER_FOOT
@@ -31,6 +36,9 @@ ROW_NAMES = tuple(
 VERTICAL_ROWS = (2, 5, 9, 12)  # z of the four points, in the order of POINT_NAMES
 YAW_ROWS = (6, 13)
 SIDE_ROWS = (1, 4, 6, 8, 11, 13)  # rows that a planar walker cannot have
+TORQUE_NAMES = tuple(f"foot_{side} {axis}" for side in "rl" for axis in ("roll", "pitch"))
+ROLL_ROWS, PITCH_ROWS = (14, 16), (15, 17)
+NUM_ROWS_WITH_TORQUES = NUM_ROWS + len(TORQUE_NAMES)
 
 PHASE_NAMES = (
     "right loading",
@@ -67,6 +75,10 @@ _CONTACTS = (  # (right foot, left foot) in each phase, docs/formulation.md 6.1
 )
 
 
+_ALONE = (None, None, 0, 0, None, None, 1, 1)  # the foot that stands alone, by phase
+_TOE_ONLY = (3, 7)
+
+
 @dataclass(frozen=True, kw_only=True)
 class ContactSettings(Settings):
     """What the ground bears.
@@ -79,10 +91,19 @@ class ContactSettings(Settings):
     patch_radius: float = quantity(
         0.03, "m", 0.0, 0.1, "radius of a contact patch, bounds the free moment of one point"
     )
+    toe_torque: bool = flag(
+        False, "whether the ground holds a foot that stands alone by torques at the toe as well"
+    )
+    toe_torque_limit: float = quantity(
+        20.0, "N m", 0.1, 1000.0, "largest of these torques, each way; toes: about 20 in walking"
+    )
 
 
-def active_rows(phase: int, planar: bool = False) -> np.ndarray:
-    """Contact rows that bear load in `phase` (0..7), as a mask of shape (14,)."""
+def active_rows(phase: int, planar: bool = False, torques: bool = False) -> np.ndarray:
+    """Contact rows that bear load in `phase` (0..7), as a mask of shape (14,), or (18,) `torques`.
+    """
+    if torques:
+        return np.append(active_rows(phase, planar), _torques(phase, planar))
     mask = np.zeros(NUM_ROWS, dtype=bool)
     right, left = _CONTACTS[phase % NUM_PHASES]
     mask[list(right)] = True
@@ -92,15 +113,33 @@ def active_rows(phase: int, planar: bool = False) -> np.ndarray:
     return mask
 
 
-def loaded_rows_at_start(phase: int, planar: bool = False) -> np.ndarray:
+def _torques(phase: int, planar: bool) -> np.ndarray:
+    """Torques on the foot that stands alone, as a mask of shape (4,)."""
+    mask = np.zeros(len(TORQUE_NAMES), dtype=bool)
+    foot = _ALONE[phase % NUM_PHASES]
+    if foot is not None:
+        mask[2 * foot] = not planar
+        mask[2 * foot + 1] = phase % NUM_PHASES in _TOE_ONLY
+    return mask
+
+
+def loaded_rows_at_start(
+    phase: int, planar: bool = False, torques: bool = False
+) -> np.ndarray:
     """Contact rows that can bear load at the instant when `phase` begins.
 
     With continuous accelerations the reaction lies in the range of the
     contacts before *and* after the event, which is the smaller of the two
     sets; so every multiplier of the contact that comes or goes is zero there:
     no impact. (A heel that lifts hands its horizontal force to the toe, an
-    equivalent load while the foot is flat.)
+    equivalent load while the foot is flat.) A torque needs the foot to stand alone on both sides
+    of the event.
     """
+    if torques:
+        same = _ALONE[(phase - 1) % NUM_PHASES] == _ALONE[phase % NUM_PHASES]
+        return np.append(
+            loaded_rows_at_start(phase, planar), same & _torques(phase, planar)
+        )
     before, after = active_rows(phase - 1, planar), active_rows(phase, planar)
     return before if before.sum() < after.sum() else after
 
@@ -112,6 +151,7 @@ def placed_rows_at_start(phase: int, planar: bool = False) -> np.ndarray:
 
 def foot_forces(multipliers: np.ndarray) -> np.ndarray:
     """Force on each foot (..., 2, 3) [N], heel and toe together, of multipliers (..., 14)."""
+    multipliers = multipliers[..., :NUM_ROWS]
     by_foot = multipliers.reshape(*multipliers.shape[:-1], 2, ROWS_PER_FOOT)
     return by_foot[..., 0:3] + by_foot[..., 3:6]
 

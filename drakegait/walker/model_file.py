@@ -17,21 +17,23 @@ import numpy as np
 
 from drakegait.errors import BadFile, InvalidInput
 from drakegait.walker.coordinates import names
+from drakegait.walker.sdf_elements import (
+    OWN_MODEL,
+    named_element,
+    parse_sdf,
+    read_inertial,
+    read_numbers,
+    read_position,
+    write_inertial,
+    write_numbers,
+)
+from drakegait.walker.segment_edits import SegmentEdit, distal_joint
 from drakegait.walker.subject import SEGMENTS, AddedMass, Segment, Subject
 
 CONTACT_FRAMES = ("heel_r", "toe_r", "heel_l", "toe_l")
 """Frames at the contact points, in the order of all arrays of contact points."""
 
-OWN_MODEL = "your SDF model"
 _LENGTH_TAGS = ("radius", "length", "size", "radii", "scale")
-_MOMENTS = {
-    "ixx": (0, 0),
-    "iyy": (1, 1),
-    "izz": (2, 2),
-    "ixy": (0, 1),
-    "ixz": (0, 2),
-    "iyz": (1, 2),
-}
 
 
 def sdf_path(skeleton: str) -> Path:
@@ -55,6 +57,7 @@ def model_sdf(
     subject: Subject,
     added_masses: Sequence[AddedMass] = (),
     text: str | None = None,
+    edits: Sequence[SegmentEdit] = (),
 ) -> str:
     """SDF text of the subject's walker.
 
@@ -65,6 +68,7 @@ def model_sdf(
         text: SDF text of your own, written for 1.80 m and 75 kg, instead of the shipped file. It
             needs a joint named like each coordinate, a link for each segment and the frames
             heel_r, toe_r, heel_l, toe_l.
+        edits: what makes single segments differ, after scaling and before masses are added.
 
     Raises:
         BadFile: if the text is not SDF or lacks a joint, link or frame, which it names.
@@ -72,22 +76,24 @@ def model_sdf(
     """
     if text is None:
         path = sdf_path(skeleton)
-        root = _parse(path.read_text(encoding="utf-8"), path)
+        root = parse_sdf(path.read_text(encoding="utf-8"), path)
     else:
         if subject.anthropometry != "default":
             allowed = "'default' when you bring an SDF model of your own"
             raise InvalidInput("anthropometry", subject.anthropometry, allowed)
         path = OWN_MODEL
-        root = _parse(text, path)
+        root = parse_sdf(text, path)
     for tag, wanted in (
         ("joint", names(skeleton)),
         ("link", SEGMENTS),
         ("frame", CONTACT_FRAMES),
     ):
         for name in wanted:
-            _element(root, tag, name, path)
+            named_element(root, tag, name, path)
     _apply_anthropometry(root, subject.anthropometry)
     _scale(root, subject.length_scale, subject.mass_scale)
+    for edit in edits:
+        edit.apply(root)
     _add_point_masses(root, added_masses)
     return ElementTree.tostring(root, encoding="unicode")
 
@@ -101,94 +107,24 @@ def read_segments(text: str) -> dict[str, Segment]:
     Raises:
         BadFile: if the text is not SDF, or lacks a link, joint or frame that is needed.
     """
-    root = _parse(text, OWN_MODEL)
+    root = parse_sdf(text, OWN_MODEL)
     segments = {}
     for name in SEGMENTS:
-        mass, com, inertia = _read_inertial(_element(root, "link", name))
+        mass, com, inertia = read_inertial(named_element(root, "link", name))
         kind, _, side = name.partition("_")
         if kind == "hat":
-            ends = np.zeros(3), _position(_element(root, "frame", "shoulders"))
+            ends = np.zeros(3), read_position(named_element(root, "frame", "shoulders"))
         elif kind == "foot":
             ends = tuple(
-                _position(_element(root, "frame", f"{end}_{side}")) for end in ("heel", "toe_tip")
+                read_position(named_element(root, "frame", f"{end}_{side}"))
+                for end in ("heel", "toe_tip")
             )
         else:
-            ends = np.zeros(3), _position(_element(root, "joint", _distal_joint(kind, side)))
+            far = named_element(root, "joint", distal_joint(kind, side))
+            ends = np.zeros(3), read_position(far)
         length = float(np.linalg.norm(ends[1] - ends[0]))
         segments[name] = Segment(mass=mass, length=length, com=com, inertia=inertia)
     return segments
-
-
-def _distal_joint(kind: str, side: str) -> str:
-    return {"thigh": "knee_flexion", "shank": "ankle_dorsiflexion"}[kind] + f"_{side}"
-
-
-def _parse(text: str, path: object) -> Element:
-    try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise BadFile(path, f"not a readable SDF text ({error}).") from None
-    if root.tag != "sdf" or root.find("model") is None:
-        raise BadFile(path, "not an SDF text with a model in it.")
-    return root
-
-
-def _element(root: Element, tag: str, name: str, path: object = OWN_MODEL) -> Element:
-    found = root.find(f"model/{tag}[@name='{name}']")
-    if found is None:
-        raise BadFile(path, f"the model has no {tag} named {name!r}.")
-    return found
-
-
-def _numbers(element: Element | None, count: int) -> np.ndarray:
-    words = (element.text or "").split() if element is not None else []
-    try:
-        values = np.array([float(word) for word in words]) if words else np.zeros(count)
-    except ValueError:
-        values = np.full(1, np.nan)
-    if not np.all(np.isfinite(values)):
-        raise BadFile(OWN_MODEL, f"{element.tag} holds {element.text!r}, not numbers.")
-    return values
-
-
-def _write(element: Element, values: Sequence[float]) -> None:
-    element.text = " ".join(repr(float(value)) for value in values)
-
-
-def _position(element: Element) -> np.ndarray:
-    return _numbers(element.find("pose"), 6)[:3]
-
-
-def _rotation(roll: float, pitch: float, yaw: float) -> np.ndarray:
-    """R_z(yaw) R_y(pitch) R_x(roll), the meaning of the angles of an SDF pose."""
-    (sr, sp, sy), (cr, cp, cy) = np.sin([roll, pitch, yaw]), np.cos([roll, pitch, yaw])
-    about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
-    about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
-    about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
-    return about_z @ about_y @ about_x
-
-
-def _read_inertial(link: Element) -> tuple[float, np.ndarray, np.ndarray]:
-    """Mass [kg], mass centre (3,) [m] and inertia (3, 3) about it [kg m^2], in the link's axes."""
-    block = link.find("inertial")
-    if block is None or block.find("mass") is None or block.find("inertia") is None:
-        raise BadFile(OWN_MODEL, f"link {link.get('name')!r} has no mass or inertia.")
-    pose = _numbers(block.find("pose"), 6)
-    inertia = np.zeros((3, 3))
-    for tag, (i, j) in _MOMENTS.items():
-        inertia[i, j] = inertia[j, i] = _numbers(block.find(f"inertia/{tag}"), 1)[0]
-    turn = _rotation(*pose[3:])
-    return float(_numbers(block.find("mass"), 1)[0]), pose[:3], turn @ inertia @ turn.T
-
-
-def _write_inertial(link: Element, mass: float, com: np.ndarray, inertia: np.ndarray) -> None:
-    block = link.find("inertial")
-    block.clear()
-    _write(ElementTree.SubElement(block, "pose"), [*com, 0.0, 0.0, 0.0])
-    _write(ElementTree.SubElement(block, "mass"), [mass])
-    matrix = ElementTree.SubElement(block, "inertia")
-    for tag, (i, j) in _MOMENTS.items():
-        _write(ElementTree.SubElement(matrix, tag), [inertia[i, j]])
 
 
 def _apply_anthropometry(root: Element, name: str) -> None:
@@ -203,31 +139,31 @@ def _apply_anthropometry(root: Element, name: str) -> None:
         inertia = np.diag([value["ixx_kgm2"], value["iyy_kgm2"], value["izz_kgm2"]])
         for segment in (s for s in SEGMENTS if s.partition("_")[0] == kind):
             side = segment.partition("_")[2]
-            _write_inertial(_element(root, "link", segment), value["mass_kg"], com, inertia)
+            write_inertial(named_element(root, "link", segment), value["mass_kg"], com, inertia)
             length = value["length_m"]
             if kind in ("thigh", "shank"):
-                pose = _element(root, "joint", _distal_joint(kind, side)).find("pose")
-                _write(pose, [0.0, 0.0, -length, 0.0, 0.0, 0.0])
+                pose = named_element(root, "joint", distal_joint(kind, side)).find("pose")
+                write_numbers(pose, [0.0, 0.0, -length, 0.0, 0.0, 0.0])
             elif kind == "foot":
-                heel = _position(_element(root, "frame", f"heel_{side}"))
-                pose = _element(root, "frame", f"toe_tip_{side}").find("pose")
-                _write(pose, [heel[0] + length, *heel[1:], 0.0, 0.0, 0.0])
+                heel = read_position(named_element(root, "frame", f"heel_{side}"))
+                pose = named_element(root, "frame", f"toe_tip_{side}").find("pose")
+                write_numbers(pose, [heel[0] + length, *heel[1:], 0.0, 0.0, 0.0])
 
 
 def _scale(root: Element, length: float, mass: float) -> None:
     if length == 1.0 and mass == 1.0:
         return
     for pose in root.iter("pose"):
-        values = _numbers(pose, 6)
-        _write(pose, [*(values[:3] * length), *values[3:]])
+        values = read_numbers(pose, 6)
+        write_numbers(pose, [*(values[:3] * length), *values[3:]])
     for tag in _LENGTH_TAGS:
         for element in root.iter(tag):
-            _write(element, _numbers(element, 1) * length)
+            write_numbers(element, read_numbers(element, 1) * length)
     for element in root.iter("mass"):
-        _write(element, _numbers(element, 1) * mass)
+        write_numbers(element, read_numbers(element, 1) * mass)
     for matrix in root.iter("inertia"):
         for moment in matrix:
-            _write(moment, _numbers(moment, 1) * mass * length**2)
+            write_numbers(moment, read_numbers(moment, 1) * mass * length**2)
 
 
 def _add_point_masses(root: Element, added_masses: Sequence[AddedMass]) -> None:
@@ -235,14 +171,14 @@ def _add_point_masses(root: Element, added_masses: Sequence[AddedMass]) -> None:
     points = [
         np.array(added.point)
         if added.point is not None
-        else _read_inertial(_element(root, "link", added.segment))[1]
+        else read_inertial(named_element(root, "link", added.segment))[1]
         for added in added_masses
     ]
     for added, point in zip(added_masses, points, strict=True):
-        link = _element(root, "link", added.segment)
-        mass, com, inertia = _read_inertial(link)
+        link = named_element(root, "link", added.segment)
+        mass, com, inertia = read_inertial(link)
         total = mass + added.mass
         arm = point - com
         # Two bodies about their common mass centre: I + (m1 m2 / (m1 + m2)) (|d|^2 1 - d d^T).
         inertia = inertia + mass * added.mass / total * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-        _write_inertial(link, total, com + added.mass / total * arm, inertia)
+        write_inertial(link, total, com + added.mass / total * arm, inertia)

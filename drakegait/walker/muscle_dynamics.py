@@ -23,7 +23,12 @@ import numpy as np
 from drakegait.errors import InvalidInput
 from drakegait.settings import Settings, choice, quantity
 from drakegait.walker.columnwise import ColumnwiseFunction
-from drakegait.walker.contraction import MuscleConstants, contract, excitation
+from drakegait.walker.contraction import (
+    MuscleConstants,
+    contract,
+    excitation,
+    excitation_bounds,
+)
 from drakegait.walker.metabolics import EnergySettings, energy_rate
 from drakegait.walker.muscles import MuscleSet
 
@@ -74,6 +79,12 @@ class MuscleSettings(Settings):
     )
     force_velocity_floor: float = quantity(
         0.02, "-", 0.005, 0.1, "least force-velocity factor, so that activation stays finite"
+    )
+    activation_dynamics: str = choice(
+        "corrected",
+        ("corrected", "printed"),
+        "eq. (C.1): (u - a)(t1 u + t2) with t1 = 1/t_a - 1/t_d, or with the signs and the t1 as "
+        "printed, under which activation runs away from excitation",
     )
     time_constants: str = choice(
         "ft_formula",
@@ -182,7 +193,8 @@ class MuscleFunctions:
         z = self._checked(z)
         constants = self.constants
         fibres = contract(np, constants, self.settings, np.moveaxis(z, -1, 0), 0.0)
-        u = excitation(np, constants, fibres.activation, fibres.activation_rate, 0.0)
+        law = self.settings.activation_dynamics
+        u = excitation(np, constants, fibres.activation, fibres.activation_rate, 0.0, law)
         rate = energy_rate(np, constants, self.energy, fibres, u, 0.0)
         return {
             "fiber_length": fibres.length * self.muscles.l_opt,
@@ -215,14 +227,10 @@ class MuscleFunctions:
         smoothing = c[len(names)]
         fibres = contract(casadi, muscle, self.settings, casadi.vertsplit(z), smoothing)
         a, a1 = fibres.activation, fibres.activation_rate
-        u = excitation(casadi, muscle, a, a1, smoothing)
+        u = excitation(casadi, muscle, a, a1, smoothing, self.settings.activation_dynamics)
         rate = energy_rate(casadi, muscle, self.energy, fibres, u, smoothing)
-        outputs = casadi.vertcat(
-            a1 + a / muscle.time_deactivation,
-            a1 - (1.0 - a) / muscle.time_activation,
-            muscle.mass * rate.total,
-        )
-        return c, z, outputs
+        off, full = excitation_bounds(muscle, self.settings, a, a1)
+        return c, z, casadi.vertcat(off, full, muscle.mass * rate.total)
 
     @cached_property
     def _values(self) -> ColumnwiseFunction:

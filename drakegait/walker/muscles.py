@@ -149,6 +149,36 @@ class MuscleSet:
             moment_arms=arms * subject.length_scale,
         )
 
+    def find(self, group: str, side: str) -> list[int]:
+        """Positions of a group (`"soleus"` or `"SOL"`) on a side (`"r"` or `"l"`).
+
+        Raises:
+            UnknownName: if there is no such group.
+        """
+        known = tuple(dict.fromkeys(name[:-2] for name in self.names))
+        found = [
+            i
+            for i, (name, short) in enumerate(zip(self.names, self.abbreviations, strict=True))
+            if group in (name[:-2], short) and name.endswith(f"_{side}")
+        ]
+        if not found:
+            raise UnknownName("muscle group", group, known)
+        return found
+
+    def without(self, gone: np.ndarray) -> MuscleSet:
+        """The set without the muscles of the mask `gone` (num_muscles,)."""
+        kept = np.flatnonzero(~np.asarray(gone))
+        values = {}
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                values[field.name] = value[kept]
+            elif isinstance(value, tuple):
+                values[field.name] = tuple(value[i] for i in kept)
+            else:
+                values[field.name] = value
+        return MuscleSet(**values)
+
     @property
     def num_muscles(self) -> int:
         """Number of muscles of both legs."""

@@ -13,12 +13,14 @@ so that one product gives all joints, and their derivatives, at any number of in
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from drakegait.settings import Settings, choice, quantity
 from drakegait.walker import coordinates
+from drakegait.walker.joint_springs import JointSpring, JointSprings
 from drakegait.walker.subject import Subject
 
 MAX_EXPONENT = 6.0
@@ -84,6 +86,11 @@ class PassiveJoints:
         kind: `"spatial"` or `"planar"`.
         subject: elastic moments are proportional to body mass times height; damping is not scaled.
         settings: model and constants.
+        springs: further springs and dampers at joints.
+        bands: further exponentials Q += pull exp(offset + slope . q) of tense muscles, as triples
+            (pull (n,) [N m], offset, slope (n,) [1/rad]).
+        bare: joints without any passive structure of the body, of which none at other joints
+            knows their angle either.
     """
 
     def __init__(
@@ -91,6 +98,9 @@ class PassiveJoints:
         kind: str,
         subject: Subject | None = None,
         settings: PassiveSettings | None = None,
+        springs: Sequence[JointSpring] = (),
+        bands: Sequence[tuple[np.ndarray, float, np.ndarray]] = (),
+        bare: Sequence[str] = (),
     ):
         subject, settings = subject or Subject(), settings or PassiveSettings()
         where = coordinates.index(kind)
@@ -124,11 +134,42 @@ class PassiveJoints:
         scale = settings.scale * subject.mass_scale * subject.length_scale
         self._signs *= scale
         self._constant *= scale
+        for joint in bare:
+            for part in (self._signs, self._slopes):
+                part[:, where[joint]] = 0.0
+            self._constant[where[joint]] = self._damping[where[joint]] = 0.0
+        if bands:
+            pulls, offsets, slopes = (np.array(part) for part in zip(*bands, strict=True))
+            self._signs = np.vstack([self._signs, pulls])
+            self._offsets = np.concatenate([self._offsets, offsets])
+            self._slopes = np.vstack([self._slopes, slopes])
+        self.springs = tuple(springs)
+        self._springs = JointSprings(kind, springs) if springs else None
+        if self._springs is not None:
+            self._damping = self._damping + self._springs.damping
 
     def forces(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Generalised forces (..., n) [N m] at coordinates q and velocities v (..., n)."""
         value, _ = self._exponentials(q)
-        return value @ self._signs + self._constant - self._damping * np.asarray(v)
+        forces = value @ self._signs + self._constant - self._damping * np.asarray(v)
+        return forces if self._springs is None else forces + self._springs.forces(q)
+
+    @property
+    def constants(self) -> dict[str, np.ndarray]:
+        """What `forces` is made of, for writers of other formats, in plant signs.
+
+        forces = signs^T exp(offsets + slopes q) + constant - damping v, each exponential going on
+        as its tangent above MAX_EXPONENT; `offsets` (terms,), `slopes` and `signs` (terms, n),
+        `constant` and `damping` (n,). The moments of `springs` come on top, their dampers are in
+        `damping`.
+        """
+        return {
+            "offsets": self._offsets,
+            "slopes": self._slopes,
+            "signs": self._signs,
+            "constant": self._constant,
+            "damping": self._damping,
+        }
 
     def derivatives(self, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of `forces`: dQ/dq (..., n, n) [N m/rad] and dQ/dv (n, n) [N m s/rad].
@@ -137,14 +178,21 @@ class PassiveJoints:
             v: not used, damping is linear.
         """
         _, slope = self._exponentials(q)
-        return (self._signs.T * slope[..., None, :]) @ self._slopes, -np.diag(self._damping)
+        by_q = (self._signs.T * slope[..., None, :]) @ self._slopes
+        if self._springs is not None:
+            by_q += self._springs.slopes(q)[..., None] * np.eye(len(self._damping))
+        return by_q, -np.diag(self._damping)
 
     def curvature(self, q: np.ndarray, weights: np.ndarray) -> np.ndarray:
         """Second derivatives (..., n, n) by q of the weighted sum of forces, weights (..., n)."""
         exponents = np.asarray(q) @ self._slopes.T + self._offsets
         bent = np.where(exponents < MAX_EXPONENT, np.exp(np.minimum(exponents, MAX_EXPONENT)), 0.0)
         factor = bent * (weights @ self._signs.T)
-        return self._slopes.T @ (factor[..., None] * self._slopes)
+        curvature = self._slopes.T @ (factor[..., None] * self._slopes)
+        if self._springs is not None:
+            bends = weights * self._springs.bends(q)
+            curvature += bends[..., None] * np.eye(len(self._damping))
+        return curvature
 
     def _exponentials(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Terms (..., terms) and their derivatives by the exponent; linear above MAX_EXPONENT."""

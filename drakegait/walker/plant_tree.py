@@ -10,7 +10,7 @@ from pydrake.multibody.tree import BodyIndex
 
 from drakegait.errors import BadFile
 from drakegait.walker.dynamics_derivatives import Tree, skew
-from drakegait.walker.model_file import OWN_MODEL
+from drakegait.walker.sdf_elements import OWN_MODEL
 
 _AXES = {
     "hat_x": ("prismatic", (1.0, 0.0, 0.0)),

@@ -18,13 +18,16 @@ from pydrake.autodiffutils import AutoDiffXd
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant, MultibodyPlant_
 
-from drakegait.errors import BadFile
+from drakegait.errors import BadFile, InvalidInput
 from drakegait.walker import coordinates
 from drakegait.walker.contact_kinematics import FeetGeometry
 from drakegait.walker.dynamics_derivatives import Motion, inverse_dynamics_derivatives
-from drakegait.walker.model_file import CONTACT_FRAMES, OWN_MODEL, model_sdf
+from drakegait.walker.model_file import CONTACT_FRAMES, model_sdf
 from drakegait.walker.plant_door import PlantDoor
 from drakegait.walker.plant_tree import check_joints, read_tree
+from drakegait.walker.rotation_sequence import sdf_in_sequence_123
+from drakegait.walker.sdf_elements import OWN_MODEL
+from drakegait.walker.segment_edits import SegmentEdit
 from drakegait.walker.subject import AddedMass, Subject
 
 GRAVITY = 9.81
@@ -37,11 +40,13 @@ class Skeleton:
     Args:
         sdf_text: an SDF model as `model_sdf` makes it.
         kind: `"spatial"` (16 coordinates) or `"planar"` (9).
+        toe_torque: whether there are four more contact rows, see `drakegait.walker.feet`.
 
     Attributes:
-        kind: as given.
+        kind, toe_torque: as given.
         coordinates: names of the coordinates, in order.
         num_coordinates: how many.
+        sdf: the text it was made from.
         plant: Drake's plant in double precision. Its own order of the coordinates may differ.
         total_mass: of the body with all that is fixed to it [kg].
 
@@ -51,8 +56,10 @@ class Skeleton:
     An instance keeps Drake contexts and must not be shared between threads.
     """
 
-    def __init__(self, sdf_text: str, kind: str):
+    def __init__(self, sdf_text: str, kind: str, toe_torque: bool = False):
         self.kind = kind
+        self.toe_torque = toe_torque
+        self.sdf = sdf_text
         self.coordinates = coordinates.names(kind)
         self.num_coordinates = len(self.coordinates)
         self.plant = MultibodyPlant(time_step=0.0)
@@ -77,13 +84,28 @@ class Skeleton:
         subject: Subject | None = None,
         added_masses: Sequence[AddedMass] = (),
         text: str | None = None,
+        edits: Sequence[SegmentEdit] = (),
+        toe_torque: bool = False,
+        sequence: str = "213",
     ) -> Skeleton:
         """The skeleton of a subject (default 1.80 m, 75 kg), with masses fixed to it.
 
         Args:
             text: SDF text of your own in place of the shipped file, see `model_sdf`.
+            edits: changes of single segments.
+            toe_torque: see the class.
+            sequence: of the rotations of trunk and hips, `"213"` or `"123"`.
         """
-        return cls(model_sdf(kind, subject or Subject(), added_masses, text), kind)
+        sdf = model_sdf(kind, subject or Subject(), added_masses, text, edits)
+        if sequence != "213":
+            if kind == "planar":
+                raise InvalidInput("sequence", sequence, "213 for a planar walker")
+            sdf = sdf_in_sequence_123(sdf)
+        return cls(sdf, kind, toe_torque)
+
+    def with_sdf(self, text: str) -> Skeleton:
+        """The same with other numbers in the text that it was made from."""
+        return type(self)(text, self.kind, self.toe_torque)
 
     # Equations of motion. Leading axes (...) are instants.
 
@@ -168,7 +190,7 @@ class Skeleton:
         along = points[..., 1, :] - points[..., 0, :]
         x, y = along[..., 0, None], along[..., 1, None]
         rows = self._feet.jacobian(motion)
-        rows = rows.reshape(*rows.shape[:-2], 2, 7, -1)[..., :6, :]
+        rows = rows[..., :14, :].reshape(*rows.shape[:-2], 2, 7, rows.shape[-1])[..., :6, :]
         change = rows[..., 3:, :] - rows[..., :3, :]
         return (x * change[..., 1, :] - y * change[..., 0, :]) / (x * x + y * y)
 
@@ -186,6 +208,15 @@ class Skeleton:
         places = motion.origins + (motion.rotations @ self._tree.coms[..., None])[..., 0]
         return (self._tree.masses / self.total_mass) @ places
 
+    def center_of_mass_jacobian(self, q: np.ndarray) -> np.ndarray:
+        """Velocity (..., 3, n) of the centre of mass per unit speed of each coordinate."""
+        motion, tree = self._motion(q), self._tree
+        places = motion.origins + (motion.rotations @ tree.coms[..., None])[..., 0]
+        shares = tree.moves * (tree.masses / self.total_mass)  # (n, bodies)
+        axes, at_origin = motion.twists[..., :3], motion.twists[..., 3:]
+        moved = np.cross(axes, shares @ places) + shares.sum(axis=-1)[:, None] * at_origin
+        return np.swapaxes(moved, -1, -2)
+
     # The door to Drake.
 
     def _read_feet(self) -> FeetGeometry:
@@ -201,7 +232,8 @@ class Skeleton:
         if not np.all(moves.any(axis=0)):
             name = self.coordinates[int(np.argmin(moves.any(axis=0)))]
             raise BadFile(OWN_MODEL, f"joint {name!r} moves neither foot.")
-        return FeetGeometry(tree.inner, moves, feet, np.array(points).reshape(2, 2, 3))
+        heels_and_toes = np.array(points).reshape(2, 2, 3)
+        return FeetGeometry(tree.inner, moves, feet, heels_and_toes, self.toe_torque)
 
     def _open(self, plant: MultibodyPlant_, scalar: type) -> PlantDoor:
         bodies, moves_right = self._tree.names, self._feet.moves[0] > 0

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from drakegait.walker import coordinates
+from drakegait.walker.disorders import Disorder, check_walker
 from drakegait.walker.feet import FootGeometry
 from drakegait.walker.metabolics import EnergySettings
 from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings
@@ -29,6 +30,7 @@ class Walker:
         muscle_functions: contraction, activation and energy of the groups.
         energy_settings: constants of the energy model.
         passive: elastic moments and damping of the joints.
+        lowest_excitation: below which muscles cannot be switched off (num_muscles,) [-].
     """
 
     subject: Subject
@@ -37,6 +39,7 @@ class Walker:
     muscle_functions: MuscleFunctions
     energy_settings: EnergySettings
     passive: PassiveJoints
+    lowest_excitation: np.ndarray
 
     @classmethod
     def build(
@@ -50,20 +53,48 @@ class Walker:
         strength: Mapping[str, float] | None = None,
         planar_set: str = "table3",
         sdf: str | None = None,
+        muscle_changes: Mapping[str, Mapping[str, float]] | None = None,
+        disorders: tuple[Disorder, ...] = (),
+        toe_torque: bool = False,
+        sequence: str = "213",
     ) -> Walker:
-        """Build the walker of a `"spatial"` or `"planar"` skeleton (`sdf`: text of your own)."""
+        """Build the walker of a `"spatial"` or `"planar"` skeleton (`sdf`: text of your own).
+
+        `muscle_changes`: other values in the muscle table, see `MuscleSet.load`. Disorders act on
+        the subject with its strength and added masses.
+
+        Raises:
+            InvalidInput, UnknownName: disorders of muscles that are not there.
+        """
         subject = subject or Subject()
         energy_settings = energy_settings or EnergySettings()
-        muscles = MuscleSet.load(kind, subject, planar_set=planar_set, strength=strength or {})
+        natural = MuscleSet.load(
+            kind, subject, planar_set, strength=strength or {}, changes=muscle_changes
+        )
+        check_walker(disorders, natural)
+        muscles = natural
+        for item in sorted(disorders, key=lambda item: len(item.bare_joints())):  # removal last
+            muscles = item.changed_muscles(muscles)
+        masses = (*added_masses, *_all(disorders, "added_masses"))
         return cls(
             subject=subject,
-            skeleton=Skeleton.load(kind, subject, added_masses, sdf),
+            skeleton=Skeleton.load(
+                kind, subject, masses, sdf, _all(disorders, "segment_edits"), toe_torque, sequence
+            ),
             muscles=muscles,
             muscle_functions=MuscleFunctions(
                 muscles, muscle_settings or MuscleSettings(), energy_settings
             ),
             energy_settings=energy_settings,
-            passive=PassiveJoints(kind, subject, passive_settings or PassiveSettings()),
+            passive=PassiveJoints(
+                kind,
+                subject,
+                passive_settings or PassiveSettings(),
+                springs=_all(disorders, "springs"),
+                bands=_pulls(disorders, natural),
+                bare=_all(disorders, "bare_joints"),
+            ),
+            lowest_excitation=_lowest_excitation(disorders, natural, muscles),
         )
 
     @property
@@ -94,3 +125,32 @@ class Walker:
                          self.coordinate_names])  # fmt: skip
         opposite = (legs[:, None] != "") & (legs[None, :] != "") & (legs[:, None] != legs[None, :])
         return ~opposite
+
+
+def _all(disorders: tuple[Disorder, ...], what: str) -> tuple:
+    """One kind of change of all disorders."""
+    return tuple(part for item in disorders for part in getattr(item, what)())
+
+
+def _pulls(
+    disorders: tuple[Disorder, ...], muscles: MuscleSet
+) -> list[tuple[np.ndarray, float, np.ndarray]]:
+    """Passive tension along paths as exponentials of the coordinates, for `PassiveJoints`."""
+    pulls = []
+    for item in disorders:
+        for band in item.bands(muscles):
+            i = muscles.names.index(band.muscle)
+            arms = muscles.moment_arms[i]  # l = l0 - arms q
+            offset = band.offset + band.rate * muscles.l0[i]
+            pulls.append((band.tension * arms, offset, -band.rate * arms))
+    return pulls
+
+
+def _lowest_excitation(
+    disorders: tuple[Disorder, ...], natural: MuscleSet, muscles: MuscleSet
+) -> np.ndarray:
+    lowest = np.zeros(natural.num_muscles)
+    for item in disorders:
+        floor = item.lowest_excitation(natural)
+        lowest = lowest if floor is None else np.maximum(lowest, floor)
+    return lowest[[natural.names.index(name) for name in muscles.names]]

@@ -16,6 +16,9 @@ MODELS = ("spatial", "planar", "spatial-symmetric", "planar-symmetric")
 FORMS = ("lifted", "projected")
 CASES = [(model, form) for model in MODELS for form in FORMS]
 LIMITS = (JointLimit("hip_flexion_r", -0.4, 0.9), JointLimit("knee_flexion_l", -0.1, np.inf))
+MIRRORED_LIMITS = (
+    *LIMITS, JointLimit("hip_flexion_l", -0.4, 0.9), JointLimit("knee_flexion_r", -0.1, np.inf)
+)  # fmt: skip
 
 
 def study(model: str, form: str = "lifted", **statements) -> GaitStudy:
@@ -24,7 +27,7 @@ def study(model: str, form: str = "lifted", **statements) -> GaitStudy:
     chosen = dict(
         nodes=11 if symmetric else 10,
         interior_points=(1, 0, 1, 1) if symmetric else (1, 0, 1, 0, 0, 1, 0, 1),
-        limits=LIMITS,
+        limits=MIRRORED_LIMITS if symmetric else LIMITS,
         multipliers=form,
     )
     return GaitStudy(model=model, **(chosen | statements))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from by_hand import ByHand, contacts, mask
-from program_cases import CASES, LIMITS, MODELS, jiggled, numbers_of, program
+from program_cases import CASES, MODELS, jiggled, numbers_of, program
 
 from drakegait.walker import coordinates, feet
 
@@ -203,8 +203,9 @@ def test_joint_limits_are_anatomical(case):
     kind = problem.formulation.walker.skeleton.kind
     signs, names = coordinates.anatomical_signs(kind), coordinates.names(kind)
     rows = by_kind(problem, x, "joint limit")
-    assert len(rows) == len(LIMITS) * len(places)
-    for limit in LIMITS:
+    limits = problem.formulation.limits
+    assert len(rows) == len(limits) * len(places)
+    for limit in limits:
         column = names.index(limit.coordinate)
         for k, place in enumerate(places):
             (row,) = numbers_of(problem, "joint limit", f"| {place} |", limit.coordinate)

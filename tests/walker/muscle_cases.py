@@ -13,6 +13,7 @@ VARIANTS = {
     "parallel_element": ({"parallel_element": "quadratic"}, {"model": "umberger2010"}),
     "full_width": ({"width": "full"}, {"heat_floor": "activation"}),
     "printed": ({"force_length": "printed"}, {"forbid_negative_power": True}),
+    "printed_activation": ({"activation_dynamics": "printed"}, {}),
     "ft_dependent": ({"force_velocity": "ft_dependent"}, {"fast_speed": "hill"}),
     "slope_factor": ({"slope_factor": 2.0}, {"recruitment": "orderly"}),
     "fixed_times": ({"time_constants": "fixed"}, {"aerobic_scaling": 1.0}),

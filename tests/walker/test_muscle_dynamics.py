@@ -8,8 +8,9 @@ from muscle_cases import VARIANTS, fibre_inputs, random_inputs, variant
 from scipy.optimize import brentq
 
 from drakegait.errors import InvalidInput
-from drakegait.walker.contraction import tendon_stretch
-from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings
+from drakegait.walker.contraction import excitation, excitation_bounds, tendon_stretch
+from drakegait.walker.metabolics import EnergySettings
+from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings, muscle_constants
 from drakegait.walker.muscles import MuscleSet
 
 SPATIAL = MuscleSet.load("spatial")
@@ -321,3 +322,38 @@ def test_largest_force_of_a_posture_is_where_activation_is_1():
     states = FUNCTIONS.states(state)
     cosine = np.sqrt(1 - (np.sin(SPATIAL.pennation) / states["normalized_fiber_length"]) ** 2)
     assert x / cosine[3] == pytest.approx(states["force_length"][3])
+
+
+# Eq. (C.1) to the letter --------------------------------------------------------------------------
+
+
+def test_printed_activation_dynamics_are_inverted_as_printed():
+    """a' = (u - a)(t1 u - t2), t2 = 1/t_d, t1 = 1/(t_a - t2): s minus 1/s, docs 2.8."""
+    muscles = MuscleSet.load("planar")
+    settings = MuscleSettings(activation_dynamics="printed")
+    constants = muscle_constants(muscles, settings, EnergySettings())
+    t2 = 1.0 / constants.time_deactivation
+    t1 = 1.0 / (constants.time_activation - t2)
+    random = np.random.default_rng(0)
+    a, u = random.uniform(0.0, 1.0, (2, 40, muscles.num_muscles))
+    rate = (u - a) * (t1 * u - t2)
+    np.testing.assert_allclose(excitation(np, constants, a, rate, 0.0, "printed"), u, atol=1e-6)
+    inside = excitation_bounds(constants, settings, a, rate)
+    assert inside[0].min() > 0.0 > inside[1].max()
+    for beyond in (-0.1, 1.1):  # exactly one of the two bounds is broken
+        off, full = excitation_bounds(
+            constants, settings, a, (beyond - a) * (t1 * beyond - t2)
+        )
+        assert ((off < 0.0) == (beyond < 0.0)).all()
+        assert ((full > 0.0) == (beyond > 1.0)).all()
+
+
+def test_printed_activation_runs_away_from_excitation():
+    """With no excitation it grows: why (C.1) cannot be meant as printed."""
+    muscles = MuscleSet.load("planar")
+    for law, way in (("corrected", -1.0), ("printed", 1.0)):
+        settings = MuscleSettings(activation_dynamics=law)
+        constants = muscle_constants(muscles, settings, EnergySettings())
+        for rate in (-5.0, 5.0):
+            u = excitation(np, constants, np.full(16, 0.5), np.full(16, rate), 0.0, law)
+            assert (np.sign(u - 0.5) == -way * np.sign(rate)).all()
