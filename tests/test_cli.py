@@ -92,7 +92,7 @@ REFUSED = [
     (["--weights", "-1", "1"], ["energy weight", "-1.0", "0 to 1000"]),
     (["--weights", "1", "x"], ["--weights", "'1 x'", "two numbers"]),
     (["--weights", "1"], ["--weights", "2 arguments"]),
-    (["--solver", "knitro"], ["solver", "'knitro'", "ipopt-mumps, ipopt, snopt"]),
+    (["--solver", "knitro"], ["solver", "'knitro'", "condensed, ipopt-mumps, ipopt, snopt"]),
     (["--multipliers", "penalty"], ["multipliers", "'penalty'", "lifted, projected"]),
     (["--time-limit", "-3"], ["time_limit", "-3.0", "[s]"]),
     (["--limit", "knee=0:60"], ["coordinate of a limit", "'knee'", "knee_flexion_r"]),

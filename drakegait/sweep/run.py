@@ -156,16 +156,19 @@ class _Run:
         if kind == "begun" and name in self._futures:
             self._watch.begin(name)
         elif kind == "ended" and name in self._futures and self._futures[name].key == key:
-            self._finish(place.client, name, self._futures.pop(name))
+            answer = self._answer(place.client, name, self._futures.pop(name))
+            if answer is not None:
+                self._finish(name, answer)
             self._submit(place)
 
     def _let_go(self, client: Client) -> None:
-        """Take back what still runs, if the sweep has been interrupted."""
+        """Take back what still runs, and the answers that nobody has fetched."""
         futures = list(self._futures.values())
         self._futures.clear()
-        if futures and client.status == "running":
+        if client.status == "running":
             with contextlib.suppress(OSError, RuntimeError):
                 client.cancel(futures)
+                client.set_metadata([self._topic], {})
 
     def _submit(self, place: Place) -> None:
         """Hand over studies that wait for nothing, as many as there is room for."""
@@ -206,16 +209,33 @@ class _Run:
             guess = self.plan.warm.get(guess)
         return guess
 
-    def _finish(self, client: Client, name: str, future: Future) -> None:
+    def _answer(self, client: Client, name: str, future: Future) -> worker.Answer | None:
+        """What has become of a study; None if it has the right to another try.
+
+        Raises:
+            ClusterLost: there is no scheduler any more.
+        """
+        from distributed import KilledWorker
+
+        try:
+            if future.status == "finished":
+                return worker.answer_of(client, name, self._topic)
+            if future.status != "error":
+                raise _lost()
+            error = future.exception()
+            if not isinstance(error, KilledWorker):
+                reason = f"The worker could not run it: {type(error).__name__}: {error}"
+                return worker.Answer(worker.RAISED, reason)
+            # Dask blames every study that was handed to a worker for its death, begun or not.
+            begun = len(client.get_events(f"{self._topic}/{name}"))
+        except OSError:  # of the connection
+            raise _lost() from None
+        if begun <= worker.RETRIES:
+            return None
+        return worker.Answer(worker.DIED, f"Its worker has died {begun} times.")
+
+    def _finish(self, name: str, answer: worker.Answer) -> None:
         """Write down how a study has ended."""
-        if future.status == "finished":
-            answer = worker.answer_of(client, name, self._topic)
-        elif future.status == "error":
-            answer = self._failure(client, name, future.exception())
-            if answer is None:  # its worker died of another study: once more
-                return
-        else:
-            raise _lost()
         self._watch.end(name)
         key, guess = self.plan.keys[name], self._guesses[name]
         if answer.failure:
@@ -228,20 +248,6 @@ class _Run:
         else:
             self.store.write_done(name, key, answer.gait, answer.summary, guess)
             self.status[name] = "done"
-
-    def _failure(
-        self, client: Client, name: str, error: BaseException
-    ) -> worker.Answer | None:
-        """What Dask's own error means for a study; None: it has the right to another try."""
-        from distributed import KilledWorker
-
-        if not isinstance(error, KilledWorker):
-            reason = f"The worker could not run it: {type(error).__name__}: {error}"
-            return worker.Answer(worker.RAISED, reason)
-        begun = len(client.get_events(f"{self._topic}/{name}"))
-        if begun <= worker.RETRIES:
-            return None
-        return worker.Answer(worker.DIED, f"Its worker has died {begun} times.")
 
     def _tell(self, cores: int) -> None:
         if self._report is None:

@@ -4,7 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -54,18 +54,32 @@ def traces(tmp_path, monkeypatch, prepared_gait, traces_link) -> Path:
 
 
 @pytest.fixture(scope="session")
-def scheduler(tmp_path_factory, traces_link) -> Iterator[str]:
-    """Address of a Dask scheduler with two workers that knows nothing of us: other processes."""
+def start_cluster(tmp_path_factory, traces_link) -> Callable[[], tuple[str, subprocess.Popen]]:
+    """Starts a Dask scheduler with two workers that knows nothing of us; ends with its input.
+
+    Returns the address and the process.
+    """
     pytest.importorskip("distributed")
     program = tmp_path_factory.mktemp("cluster") / "cluster.py"
     program.write_text(CLUSTER)
     paths = [str(TESTS.parent), str(TESTS / "sweep")]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths),
                                 sweep_cases.TRACE: str(traces_link)}  # fmt: skip
-    process = subprocess.Popen(
-        [sys.executable, program], env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-        text=True,
-    )  # fmt: skip
+
+    def start() -> tuple[str, subprocess.Popen]:
+        process = subprocess.Popen(
+            [sys.executable, program], env=environment, stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        return process.stdout.readline().strip(), process
+
+    return start
+
+
+@pytest.fixture(scope="session")
+def scheduler(start_cluster) -> Iterator[str]:
+    """Address of a scheduler that serves all tests."""
+    address, process = start_cluster()
     with process:
-        yield process.stdout.readline().strip()
+        yield address
         process.stdin.close()

@@ -30,6 +30,24 @@ def test_a_scheduler_by_address_solves_on_its_own_workers(tmp_path, traces, sche
     assert set(cases.processes(traces)) <= theirs
 
 
+def test_a_scheduler_that_goes_away_ends_the_sweep_and_costs_nothing(
+    tmp_path, traces, start_cluster
+):
+    cases.tell(traces, "1.1", "wait")
+    address, process = start_cluster()
+
+    def kill_it(progress):
+        if progress.done == 1:
+            process.kill()
+
+    asked, out = studies(1.0, 1.1), tmp_path / "out"
+    with process, pytest.raises(cluster.ClusterLost, match="finished studies are kept"):
+        sweep(asked, out, scheduler=address, report=kill_it, _solve=cases.solve)
+    (traces / "gate").touch()
+    result = sweep(asked, out, workers=1, _solve=cases.solve)
+    assert result.failures == {} and cases.trace(traces, "end") == ["1", "1.1"]
+
+
 def test_workers_of_another_version_are_refused(tmp_path, traces, scheduler, monkeypatch):
     monkeypatch.setattr("drakegait.__version__", "9.9")  # here, not there
     with pytest.raises(cluster.ClusterLost, match=r"has drakegait .* on Python .*, not 9\.9 on"):

@@ -10,12 +10,11 @@ restoration phase: where no step is acceptable the method says so.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from drakegait.program.gait_program import GaitProgram
 from drakegait.solvers.condensed.filter import Filter
+from drakegait.solvers.condensed.iterate import Errors, Multipliers, inside, longest_step
 from drakegait.solvers.condensed.system import CondensedSystem
 
 _TAU = 0.99  # smallest fraction to the boundary (8)
@@ -26,29 +25,6 @@ _SCALE_MAX = 100.0  # s_max of (5)
 _CORRECTIONS, _CORRECTED = 4, 0.99  # second-order corrections (section 2.4)
 _SHIFTS = 1e-4, 1e-20, 1e40  # first, smallest, largest multiple of the identity (section 3.1)
 _SHIFT_UP, _SHIFT_UP_FIRST, _SHIFT_DOWN = 8.0, 100.0, 1.0 / 3.0
-
-
-@dataclass
-class Multipliers:
-    """Dual unknowns: of all rows, and of lower and upper bounds of x and slacks."""
-
-    rows: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
-
-
-@dataclass(frozen=True)
-class Errors:
-    """Scaled violations of the KKT conditions, (5), (6)."""
-
-    dual: float
-    primal: float
-    complementarity: float
-
-    @property
-    def worst(self) -> float:
-        """E_mu."""
-        return max(self.dual, self.primal, self.complementarity)
 
 
 class InteriorPoint:
@@ -80,9 +56,9 @@ class InteriorPoint:
         self._low = np.concatenate([program.design.lower, program.lower[self._inequality]])
         self._high = np.concatenate([program.design.upper, program.upper[self._inequality]])
         self._has_low, self._has_high = np.isfinite(self._low), np.isfinite(self._high)
-        x = self._inside(x, self._low[: self._size], self._high[: self._size], push)
+        x = inside(x, self._low[: self._size], self._high[: self._size], push)
         rows = program.rows(x)
-        slacks = self._inside(
+        slacks = inside(
             rows[self._inequality], self._low[self._size :], self._high[self._size :], push
         )
         self.w = np.concatenate([x, slacks])
@@ -91,15 +67,6 @@ class InteriorPoint:
         self.multipliers = multipliers or self._first_multipliers()
         self._evaluate()
         self._filter = Filter(np.abs(self._primal).sum())
-
-    @staticmethod
-    def _inside(x: np.ndarray, low: np.ndarray, high: np.ndarray, push: float) -> np.ndarray:
-        """`x` moved into the interior of its bounds (section 3.6)."""
-        with np.errstate(invalid="ignore"):
-            below = np.minimum(push * np.maximum(1.0, np.abs(low)), push * (high - low))
-            above = np.minimum(push * np.maximum(1.0, np.abs(high)), push * (high - low))
-            x = np.where(np.isfinite(low), np.maximum(x, low + below), x)
-            return np.where(np.isfinite(high), np.minimum(x, high - above), x)
 
     def _first_multipliers(self) -> Multipliers:
         low, high = self._gaps(self.w)
@@ -250,7 +217,7 @@ class InteriorPoint:
         """Backtracking line search; moves if a step is accepted."""
         dw, dy = direction
         fraction = max(_TAU, 1.0 - self.barrier)
-        longest = self._reach(self.w, dw, fraction)
+        longest = longest_step(*self._gaps(self.w), dw, fraction)
         theta = np.abs(self._primal).sum()
         phi = self._barrier_cost(self.w, self.cost)
         slope = float(self._gradient @ dw[: self._size] + push @ dw)
@@ -285,7 +252,7 @@ class InteriorPoint:
         fraction = max(_TAU, 1.0 - self.barrier)
         for _ in range(_CORRECTIONS):
             dw, dy = self._direction(total, stiffness, push)
-            longest = self._reach(self.w, dw, fraction)
+            longest = longest_step(*self._gaps(self.w), dw, fraction)
             trial = self.w + longest * dw
             measures, primal = self._measure(trial)
             if self._filter.accepts(theta, phi, measures, slope, step):
@@ -305,14 +272,6 @@ class InteriorPoint:
         cost = self._barrier_cost(w, self.program.cost(w[: self._size]))
         return (theta, cost if np.isfinite(cost) else np.inf), primal
 
-    def _reach(self, w: np.ndarray, dw: np.ndarray, fraction: float) -> float:
-        """The longest step, at most 1, that keeps a part of every distance to a bound."""
-        low, high = self._gaps(w)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            down = np.where(dw < 0.0, -fraction * low / dw, np.inf).min()
-            up = np.where(dw > 0.0, fraction * high / dw, np.inf).min()
-        return float(min(1.0, down, up))
-
     def _move(self, w: np.ndarray, dw: np.ndarray, dy: np.ndarray, step: float) -> None:
         """Accept `w`; the multipliers follow."""
         z, barrier = self.multipliers, self.barrier
@@ -320,12 +279,11 @@ class InteriorPoint:
         d_low = barrier / low - z.lower - z.lower / low * dw
         d_high = barrier / high - z.upper + z.upper / high * dw
         fraction = max(_TAU, 1.0 - barrier)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            longest = min(
-                1.0,
-                np.where(d_low < 0.0, -fraction * z.lower / d_low, np.inf).min(),
-                np.where(d_high < 0.0, -fraction * z.upper / d_high, np.inf).min(),
-            )
+        free = np.full(len(w), np.inf)
+        longest = min(
+            longest_step(z.lower, free, d_low, fraction),
+            longest_step(z.upper, free, d_high, fraction),
+        )
         self.w = w
         self.dual_step, self.primal_step = longest, step
         new_low, new_high = self._gaps(w)

@@ -28,26 +28,10 @@ from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
 from drakegait.program.local_rows import DenseRows
 from drakegait.solvers.condensed.assembly import Assembly
 from drakegait.solvers.condensed.local_elimination import LocalElimination
+from drakegait.solvers.condensed.sparse_structure import SparseStructure
 from drakegait.walker import feet
 
 _ELIMINATED = (EquationsOfMotion, LeastSquaresMultipliers)
-
-
-class SparseStructure:
-    """A sparse matrix of constant structure whose entries are given in another order."""
-
-    def __init__(self, rows: np.ndarray, columns: np.ndarray, shape: tuple[int, int]):
-        numbered = scipy.sparse.coo_array((np.arange(1.0, len(rows) + 1.0), (rows, columns)), shape)
-        compressed = numbered.tocsr()
-        if compressed.nnz != len(rows):
-            raise ValueError("two entries at one place")
-        self._order = compressed.data.astype(int) - 1
-        self._indices, self._starts, self._shape = compressed.indices, compressed.indptr, shape
-
-    def matrix(self, entries: np.ndarray) -> scipy.sparse.csr_array:
-        """The matrix with these entries."""
-        data = entries[self._order]
-        return scipy.sparse.csr_array((data, self._indices, self._starts), shape=self._shape)
 
 
 @dataclass(frozen=True)
