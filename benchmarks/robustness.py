@@ -130,7 +130,8 @@ def print_model(model: str, found: dict[str, Any]) -> None:
     spread = summary["spread_percent"]
     spread = "-" if spread is None else f"{spread:.2f}"
     print(
-        f"\n{model}, {found['nodes']} nodes, {found['solver']}: {summary['converged_percent']:.0f} % of "
+        f"\n{model}, {found['nodes']} nodes, {found['solver']}: "
+        f"{summary['converged_percent']:.0f} % of "
         f"{summary['starts']} starts converged, costs within {spread} %, "
         f"median {summary['median_iterations']:.0f} iterations, {summary['median_cpu_s']:.1f} s CPU"
     )

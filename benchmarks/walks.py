@@ -76,6 +76,7 @@ ROWS = {
         Row("planar", "walk --model planar --nodes 18", quick=True),
         Row("planar-symmetric-19", "walk --model planar-symmetric --nodes 19", quick=True),
         Row("planar-symmetric-35", "walk --model planar-symmetric --nodes 35", quick=True),
+        Row("spatial-35", "walk --nodes 35"),
         Row("spatial-symmetric", "walk --model spatial-symmetric --nodes 19", quick=True),
         Row("heavy-foot", "walk --nodes 18 --added-mass foot_r=2.0 --guess {spatial}"),
         Row("spatial-drake", "walk --nodes 18 --solver ipopt"),

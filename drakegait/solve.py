@@ -17,7 +17,9 @@ from drakegait.program.guess import guess_from_values
 from drakegait.program.kkt import KktMultipliers
 from drakegait.program.starts import REFERENCE, Start
 from drakegait.program.starts import starts as several_starts
+from drakegait.resampling import values_for
 from drakegait.solvers.advice import advice_for
+from drakegait.solvers.condensed.iterate import Multipliers
 from drakegait.solvers.monitor import Monitor, Progress
 from drakegait.solvers.options import SolverOptions
 from drakegait.solvers.outcome import Outcome
@@ -25,7 +27,6 @@ from drakegait.solvers.solution import MESSAGES, Solution
 from drakegait.starts import best_of
 from drakegait.study import GaitStudy
 from drakegait.transcription.design_vector import DesignValues
-from drakegait.walker.rotation_sequence import convert
 
 MAX_ROUNDS = 3  # of added control points
 _MAX_RECENTRINGS = 3
@@ -180,9 +181,9 @@ class _Run:
             x = start.point(self.program)
         else:
             self.program = self._stated(guess.values.events)
-            x = guess_from_values(self.program, self._resampled(guess))
+            x = guess_from_values(self.program, values_for(self.study, guess))
         self.setup_time += time.monotonic() - started
-        self._solve(x, warm=guess is not None)
+        self._solve(x, warm=guess is not None, known=None if guess is None else guess.kkt)
         self._recentre()
 
     def refine(self, phases: set[int]) -> None:
@@ -199,11 +200,11 @@ class _Run:
         self._recentre()
 
     def _again(self, values: DesignValues) -> None:
-        started = time.monotonic()
+        started, known = time.monotonic(), self._multipliers()
         self.program = self._stated(values.events)
         x = guess_from_values(self.program, values)
         self.setup_time += time.monotonic() - started
-        self._solve(x, warm=True)
+        self._solve(x, warm=True, known=known)
 
     def _recentre(self) -> None:
         """Events are bounded so that control points keep their window; move the bounds along."""
@@ -216,46 +217,18 @@ class _Run:
                 return
             self._again(values)
 
-    def _solve(self, x: np.ndarray, warm: bool) -> None:
+    def _solve(self, x: np.ndarray, warm: bool, known: KktMultipliers | None = None) -> None:
         self.monitor.begin(self.program)
-        started = time.monotonic()
-        solve_program = _solver(self.options.solver)
-        self.solution = solve_program(self.program, x, self.options, self.monitor, warm)
+        started, program = time.monotonic(), self.program
+        solve_program, more = _solver(self.options.solver), {}
+        # Only this solver can start from multipliers, and only from those of the same rows.
+        if self.options.solver == "condensed" and known is not None:
+            sizes = len(known.rows), len(known.x)
+            if sizes == (program.num_constraints, program.num_variables):
+                more = {"known": Multipliers(known.rows, known.lower, known.upper)}
+        self.solution = solve_program(program, x, self.options, self.monitor, warm, **more)
         self.solver_time += time.monotonic() - started
         self.iterations += self.solution.iterations
-
-    def _resampled(self, guess: Gait) -> DesignValues:
-        """The guess on this study's nodes; its contact forces are fitted anew if points differ."""
-        values, nodes = guess.values, self.study.nodes
-        splines = self.program.formulation.splines
-        given, wanted = guess.study.variants.sequence, self.study.variants.sequence
-        if given != wanted:
-            nodal = guess.splines.nodal_values(values.coordinate_coefficients)
-            nodal = convert(nodal.T, given, wanted).T
-            values = replace(values, coordinate_coefficients=guess.splines.coefficients(nodal))
-        muscles = self.study.walker.muscles
-        if guess.muscle_names != muscles.names:
-            # Another set of muscles: those that both have keep their forces.
-            known = dict(zip(guess.muscle_names, values.force_coefficients, strict=True))
-            least = self.study.muscles.min_force * muscles.f_max
-            count = values.force_coefficients.shape[1]
-            forces = [
-                known.get(name, np.full(count, force))
-                for name, force in zip(muscles.names, least, strict=True)
-            ]
-            values = replace(values, force_coefficients=np.array(forces))
-        if guess.study.nodes != nodes:
-            samples = np.arange(8 * nodes) / (8 * nodes)
-            values = replace(
-                values,
-                coordinate_coefficients=splines.fit(
-                    samples, guess.splines.evaluate(values.coordinate_coefficients, samples)
-                ),
-                force_coefficients=splines.fit(
-                    samples, guess.splines.evaluate(values.force_coefficients, samples)
-                ),
-            )
-        return values
 
     def gait(self) -> Gait:
         """The gait that this round found, checked."""

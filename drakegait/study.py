@@ -174,11 +174,10 @@ class GaitStudy:
 
     def with_disorder(self, *disorders: Disorder | AddedMass) -> GaitStudy:
         """A copy with further disorders, see `drakegait.walker.disorders`."""
-        worn = tuple(item for item in disorders if isinstance(item, AddedMass))
-        others = tuple(item for item in disorders if not isinstance(item, AddedMass))
-        return self.replace(
-            added_masses=(*self.added_masses, *worn), disorders=(*self.disorders, *others)
-        )
+        worn = tuple(x for x in disorders if isinstance(x, AddedMass))
+        others = tuple(x for x in disorders if not isinstance(x, AddedMass))
+        masses = (*self.added_masses, *worn)
+        return self.replace(added_masses=masses, disorders=(*self.disorders, *others))
 
     def with_limit(
         self, coordinate: str, low: float = -math.inf, high: float = math.inf
@@ -243,8 +242,8 @@ class GaitStudy:
     @property
     def all_limits(self) -> tuple[JointLimit, ...]:
         """Joint limits, those of disorders included."""
-        ranges = (limit for item in self.disorders for limit in item.limits())
-        return (*self.limits, *(JointLimit(*limit) for limit in ranges))
+        ranges = (JointLimit(*limit) for item in self.disorders for limit in item.limits())
+        return (*self.limits, *ranges)
 
     @property
     def schedule(self) -> Schedule:
@@ -266,8 +265,7 @@ class GaitStudy:
         Raises:
             InvalidInput: a symmetric walker whose weights, strengths or limits have one side only.
         """
-        if self.symmetric:
-            check_both_sides(self)  # not at birth, so that one side can be stated after the other
+        check_both_sides(self)  # not at birth, so that one side can be stated after the other
         if event_centres is None:
             fractions = np.asarray(self.reference_walk.phase_fractions)
             event_centres = np.concatenate([[0.0], np.cumsum(fractions)[:-1]])

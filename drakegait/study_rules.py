@@ -44,11 +44,13 @@ def check_limits(limits: Sequence[JointLimit]) -> None:
 
 
 def check_both_sides(study: GaitStudy) -> None:
-    """Refuse what a mirrored walker can only have on both sides, but has on one.
+    """Refuse what a symmetric walker can only have on both sides, but has on one.
 
     Raises:
         InvalidInput: naming the first of them.
     """
+    if not study.symmetric:
+        return
     for item in study.added_masses:
         point = item.point and (item.point[0], -item.point[1], item.point[2])
         image = dataclasses.replace(item, segment=_mirror_name(item.segment), point=point)

@@ -58,8 +58,8 @@ def test_from_the_reference_both_end_within_two_per_cent(program, exact, approxi
 
 
 def test_exact_second_derivatives_need_fewer_iterations(exact, approximate):
-    """Here about half of them; a wrong Hessian loses that first."""
-    assert exact.iterations < 0.8 * approximate.iterations
+    """A sixth fewer, half before force-velocity lost its corner; a wrong Hessian loses that."""
+    assert exact.iterations < 0.9 * approximate.iterations
 
 
 def test_exact_second_derivatives_end_no_higher_than_where_they_start(program, approximate):

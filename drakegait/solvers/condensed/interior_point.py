@@ -21,6 +21,7 @@ _TAU = 0.99  # smallest fraction to the boundary (8)
 _PUSH = 1e-2  # of a range, between a start and its bounds (section 3.6)
 _KAPPA_EPS, _KAPPA_MU, _THETA_MU = 10.0, 0.2, 1.5  # barrier problem, (7)
 _KAPPA_SIGMA = 1e10  # (16)
+_LEAST_KNOWN = 0.1  # of mu over the distance to a bound, for multipliers from elsewhere
 _SCALE_MAX = 100.0  # s_max of (5)
 _CORRECTIONS, _CORRECTED = 4, 0.99  # second-order corrections (section 2.4)
 _SHIFTS = 1e-4, 1e-20, 1e40  # first, smallest, largest multiple of the identity (section 3.1)
@@ -35,7 +36,7 @@ class InteriorPoint:
         x: start.
         barrier: first mu.
         last_barrier: smallest mu.
-        multipliers: known from an earlier solve; default none.
+        known: multipliers of rows and of lower and upper bounds from a solve nearby.
         push: least distance of the start from its bounds, relative.
     """
 
@@ -46,7 +47,7 @@ class InteriorPoint:
         x: np.ndarray,
         barrier: float,
         last_barrier: float,
-        multipliers: Multipliers | None = None,
+        known: Multipliers | None = None,
         push: float = _PUSH,
     ):
         self.program, self.system = program, system
@@ -64,14 +65,19 @@ class InteriorPoint:
         self.w = np.concatenate([x, slacks])
         self.barrier, self._last_barrier = barrier, last_barrier
         self.shift = 0.0
-        self.multipliers = multipliers or self._first_multipliers()
+        self.multipliers = self._first_multipliers(known)
         self._evaluate()
         self._filter = Filter(np.abs(self._primal).sum())
 
-    def _first_multipliers(self) -> Multipliers:
-        low, high = self._gaps(self.w)
+    def _first_multipliers(self, known: Multipliers | None) -> Multipliers:
+        low, high = self.barrier / np.stack(self._gaps(self.w))
+        if known is None:
+            return Multipliers(np.zeros(self.program.num_constraints), low, high)
+        of_slacks = known.rows[self._inequality]
         return Multipliers(
-            np.zeros(self.program.num_constraints), self.barrier / low, self.barrier / high
+            known.rows.copy(),
+            np.maximum(np.concatenate([known.lower, -of_slacks]), _LEAST_KNOWN * low),
+            np.maximum(np.concatenate([known.upper, of_slacks]), _LEAST_KNOWN * high),
         )
 
     def _gaps(self, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,11 +8,14 @@ Programs that this does not cover go to `ipopt_mumps`, and the message says so.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.solvers.condensed.interior_point import InteriorPoint
+from drakegait.solvers.condensed.iterate import Multipliers
 from drakegait.solvers.condensed.supported import why_not
 from drakegait.solvers.condensed.system import CondensedSystem
 from drakegait.solvers.monitor import Monitor
@@ -21,7 +24,9 @@ from drakegait.solvers.settled import Settled
 from drakegait.solvers.solution import Solution
 
 FIRST_BARRIER, WARM_BARRIER = 1e-2, 1e-4
-_PUSH, _WARM_PUSH = 1e-2, 1e-4  # of a start from its bounds, relative
+# Of a start from its bounds, relative. With multipliers the start may stand further off: what
+# is at its bound goes back there in a few steps, and the others move freely.
+_PUSH, _WARM_PUSH, _KNOWN_PUSH = 1e-2, 1e-4, 1e-3
 _LAST_BARRIER = 0.09  # of the tolerance on complementarity
 
 
@@ -31,11 +36,13 @@ def solve_condensed(
     options: SolverOptions,
     monitor: Monitor,
     warm: bool = False,
+    known: Multipliers | None = None,
 ) -> Solution:
     """Minimise the program from `x`; see `Solution`.
 
     Args:
         warm: `x` is an earlier gait, near the optimum.
+        known: its multipliers, of a program with the same rows and variables.
     """
     reason = why_not(program, options)
     if reason:
@@ -49,8 +56,10 @@ def solve_condensed(
         x,
         barrier=first,
         last_barrier=_LAST_BARRIER * complementarity,
-        push=_WARM_PUSH if warm else _PUSH,
+        push=_PUSH if not warm else _WARM_PUSH if known is None else _KNOWN_PUSH,
+        known=known,
     )
+    monitor.step(method.x, 0)
     settled = Settled(options)
     iterations, status, detail = 0, "", ""
     while not status:
@@ -102,8 +111,6 @@ def _by_ipopt(
     why: str,
 ) -> Solution:
     """What this solver does not cover, by IPOPT."""
-    from dataclasses import replace
-
     try:
         from drakegait.solvers.ipopt_mumps import solve_with_ipopt_mumps as other
     except ImportError:  # no wheel of ipyopt for this machine
