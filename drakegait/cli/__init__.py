@@ -14,11 +14,13 @@ from typing import Any
 
 import typer
 
-from drakegait.cli import compare, export, import_, look, sensitivities, sweep, walk
+from drakegait.cli import compare, export, import_, look, paper, sensitivities, sweep, walk
 from drakegait.cli.app import app
 from drakegait.errors import DrakegaitError
 
-__all__ = ["app", "compare", "export", "import_", "look", "main", "sensitivities", "sweep", "walk"]
+__all__ = [
+    "app", "compare", "export", "import_", "look", "main", "paper", "sensitivities", "sweep", "walk",
+]  # fmt: skip
 
 BAD_INPUT, INTERRUPTED = 2, 130
 # Typer's errors about options derive from these; where Typer keeps them depends on its version.

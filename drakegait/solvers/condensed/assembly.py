@@ -10,7 +10,6 @@ import numpy as np
 import scipy.sparse
 
 from drakegait.program.gait_program import GaitProgram
-from drakegait.program.hessian_blocks import NUM_LATE
 
 
 class Assembly:
@@ -33,9 +32,15 @@ class Assembly:
             for k in np.unique(first)
         ]
         self._spread = self._coefficients(program, size)
-        index = program.selection.index[:, layout.time : layout.multipliers]
-        self._late_index = np.where(index >= 0, index, size)
-        self._late_factor = program.selection.factor[:, layout.time : layout.multipliers]
+        # The few unknowns of timing and placement, and how each point's late variables are made
+        # of them.
+        late = slice(layout.time, layout.multipliers)
+        index, factor = program.selection.index[:, late], program.selection.factor[:, late]
+        self._late = np.unique(index[index >= 0])
+        self._late_map = np.zeros((*index.shape, len(self._late)))
+        point, position = np.nonzero(index >= 0)
+        column = np.searchsorted(self._late, index[point, position])
+        self._late_map[point, position, column] = factor[point, position]
         self._size = size
 
     def _coefficients(self, program: GaitProgram, size: int) -> scipy.sparse.csr_array:
@@ -56,44 +61,39 @@ class Assembly:
             basis: weights of the window's coefficients for the orders 0, 1, 2, (num, 3, width).
         """
         n, m, width = self._n, self._m, self._width
-        own = 3 * n + m
-        total = self._intervals * self._functions
-        full = np.zeros((self._intervals, self._intervals, self._functions, self._functions))
-        with_late = np.empty((len(blocks), NUM_LATE, self._functions, width))
-        late = blocks[:, own:, :own]
-        with_late[:, :, :n] = late[:, :, : 3 * n].reshape(-1, NUM_LATE, n, 3) @ basis[:, None]
-        with_late[:, :, n:] = late[:, :, 3 * n :, None] * basis[:, None, None, 0]
-        by_late = np.zeros((self._size + 1, self._intervals, self._functions))
+        own, num = 3 * n + m, len(blocks)
+        intervals, functions = self._intervals, self._functions
+        full = np.zeros((intervals, intervals, functions, functions))
+        by_late = np.zeros((len(self._late), intervals, functions))
+        # Pairs of basis rows, and the blocks with those rows' orders beside the points.
+        pairs = basis[:, :, None, :, None] * basis[:, None, :, None, :]
+        motion = blocks[:, : 3 * n, : 3 * n].reshape(num, n, 3, n, 3)
+        motion = motion.transpose(0, 2, 4, 1, 3).reshape(num, 9, n * n)
+        cross = blocks[:, : 3 * n, 3 * n : own].reshape(num, n, 3, m)
+        cross = cross.transpose(0, 2, 1, 3).reshape(num, 3, n * m)
+        force = blocks[:, 3 * n : own, 3 * n : own].reshape(num, m * m)
+        late = np.swapaxes(self._late_map, 1, 2) @ blocks[:, own:, :own]
+        with_late = np.empty((num, len(self._late), width, functions))
+        along = late[:, :, : 3 * n].reshape(num, -1, n, 3) @ basis[:, None]
+        with_late[..., :n] = along.transpose(0, 1, 3, 2)
+        with_late[..., n:] = basis[:, None, 0, :, None] * late[:, :, None, 3 * n :]
         for which, window in self._groups:
-            b = basis[which]
-            part = np.empty((width, width, self._functions, self._functions))
-            pairs = np.einsum("kau,kbv->uvabk", b, b).reshape(width * width, -1)
-            motion = blocks[which, : 3 * n, : 3 * n].reshape(-1, n, 3, n, 3)
-            motion = motion.transpose(2, 4, 0, 1, 3).reshape(-1, n * n)
-            part[:, :, :n, :n] = (pairs @ motion).reshape(width, width, n, n)
-            b0 = b[:, 0]
-            pairs = np.einsum("kau,kv->uvak", b, b0).reshape(width * width, -1)
-            cross = blocks[which, : 3 * n, 3 * n : own].reshape(-1, n, 3, m)
-            cross = cross.transpose(2, 0, 1, 3).reshape(-1, n * m)
-            part[:, :, :n, n:] = (pairs @ cross).reshape(width, width, n, m)
+            count = len(which)
+            part = np.empty((width, width, functions, functions))
+            b = pairs[which].transpose(3, 4, 0, 1, 2).reshape(width * width, count, 9)
+            by_motion = b.reshape(width * width, -1) @ motion[which].reshape(count * 9, -1)
+            part[:, :, :n, :n] = by_motion.reshape(width, width, n, n)
+            by_cross = b[:, :, ::3].reshape(width * width, -1) @ cross[which].reshape(count * 3, -1)
+            part[:, :, :n, n:] = by_cross.reshape(width, width, n, m)
             part[:, :, n:, :n] = part[:, :, :n, n:].transpose(1, 0, 3, 2)
-            pairs = np.einsum("ku,kv->uvk", b0, b0).reshape(width * width, -1)
-            force = blocks[which, 3 * n : own, 3 * n : own].reshape(-1, m * m)
-            part[:, :, n:, n:] = (pairs @ force).reshape(width, width, m, m)
+            part[:, :, n:, n:] = (b[:, :, 0] @ force[which]).reshape(width, width, m, m)
             full[np.ix_(window, window)] += part
-            # At most a few dozen points share a window: one by one for the late variables.
-            for k in which:
-                rows = with_late[k] * self._late_factor[k][:, None, None]
-                target = np.ix_(self._late_index[k], window)
-                np.add.at(by_late, target, rows.transpose(0, 2, 1))
+            by_late[:, window] += with_late[which].sum(axis=0)
+        total, spread = intervals * functions, self._spread
         square = full.transpose(0, 2, 1, 3).reshape(total, total)
-        spread = self._spread
         matrix += spread.T @ (spread.T @ square).T
-        cross = by_late[: self._size].reshape(self._size, total) @ spread
-        matrix += cross + cross.T
-        corner = blocks[:, own:, own:] * self._late_factor[:, :, None]
-        corner = corner * self._late_factor[:, None]
-        padded = np.zeros((self._size + 1, self._size + 1))
-        index = self._late_index
-        np.add.at(padded, (index[:, :, None], index[:, None]), corner)
-        matrix += padded[:-1, :-1]
+        beside = by_late.reshape(len(self._late), total) @ spread
+        matrix[self._late] += beside
+        matrix[:, self._late] += beside.T
+        corner = np.swapaxes(self._late_map, 1, 2) @ blocks[:, own:, own:] @ self._late_map
+        matrix[np.ix_(self._late, self._late)] += corner.sum(axis=0)

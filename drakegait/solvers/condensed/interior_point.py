@@ -188,13 +188,12 @@ class InteriorPoint:
         last = self.shift
         up = _SHIFT_UP if last > 0.0 else _SHIFT_UP_FIRST
         if self.system.factor(shift):
-            self.used_shift = shift
             self.shift = shift if shift > 0.0 else last
             return True
         shift = max(shift, first if last == 0.0 else max(smallest, _SHIFT_DOWN * last))
         while shift <= largest:
             if self.system.factor(shift):
-                self.shift = self.used_shift = shift
+                self.shift = shift
                 return True
             shift *= up
         return False
@@ -243,15 +242,9 @@ class InteriorPoint:
         return False
 
     def _correct(
-        self,
-        primal: np.ndarray,
-        stiffness: np.ndarray,
-        push: np.ndarray,
-        theta: float,
-        phi: float,
-        slope: float,
-        step: float,
-    ) -> bool:
+        self, primal: np.ndarray, stiffness: np.ndarray, push: np.ndarray, theta: float,
+        phi: float, slope: float, step: float,
+    ) -> bool:  # fmt: skip
         """Second-order corrections of the longest step."""
         total = step * self._primal + primal
         before = np.inf
@@ -291,7 +284,6 @@ class InteriorPoint:
             longest_step(z.upper, free, d_high, fraction),
         )
         self.w = w
-        self.dual_step, self.primal_step = longest, step
         new_low, new_high = self._gaps(w)
 
         def guarded(value: np.ndarray, gap: np.ndarray) -> np.ndarray:
