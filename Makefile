@@ -39,9 +39,8 @@ test-all: $(VENV)/test.stamp
 	$(PYTEST) $(ARGS)
 
 bench: $(VENV)/test.stamp
-	@for program in benchmarks/*.py; do \
-	  echo "== $$program"; $(PY) $$program $(ARGS) || exit 1; \
-	done
+	$(PY) benchmarks/walks.py --repeats 3 $(ARGS)
+	$(PY) benchmarks/evaluation.py
 
 lint: $(VENV)/test.stamp
 	$(PY) -m ruff check .

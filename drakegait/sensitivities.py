@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 
     from drakegait.gait import Gait
 
+EXACT = 1e-6
+"""Relative KKT residual below which it is known which bounds are active."""
+WIDE_BARRIER = 1e-3
+"""Barrier parameter for dE^t/dp above it (measured: docs/sensitivities.md)."""
 _NOTHING = 1e-8  # of cost and energy for a step: the walk does not depend on the parameter
 _DIFFERENCE = 1e-4  # of a parameter's step: about 1e-5 of its value
 # Weights of the differences at offsets of so many steps: central, or to the side that is allowed.
@@ -74,6 +78,8 @@ class Sensitivities:
         energy: E^t [J/m] with the solver's rounded corners.
         stationarity: what is left of the KKT conditions, relative to the gradient of the cost:
             about the relative error of df/dp times how far the solution moves.
+        exact: whether the optimum was known to `EXACT`. Then dE^t/dp is the derivative there, else
+            an estimate in which bounds that may come and go count in part.
         title: who walks.
     """
 
@@ -81,6 +87,7 @@ class Sensitivities:
     cost: float
     energy: float
     stationarity: float
+    exact: bool
     title: str
 
     def __getitem__(self, parameter: str) -> Sensitivity:
@@ -116,7 +123,8 @@ class Sensitivities:
 def sensitivities(gait: Gait) -> Sensitivities:
     """Derivatives of the optimum `gait` by all parameters of its study.
 
-    Where the multipliers are not lifted, second derivatives are not known and dE^t/dp is nan.
+    Where the multipliers are not lifted, second derivatives are not known and dE^t/dp is nan, as
+    it is where the cost curves downwards.
 
     Raises:
         InvalidInput: the gait has no multipliers: it was not solved to an optimum, or by an
@@ -124,9 +132,10 @@ def sensitivities(gait: Gait) -> Sensitivities:
     """
     optimum = _optimum(gait)
     program = optimum.program
+    exact = optimum.stationarity < EXACT
     adjoint = None
     if program.formulation.lifted:
-        system = KktSystem(optimum)
+        system = KktSystem(optimum, None if exact else WIDE_BARRIER)
         adjoint = system.energy_adjoint()
     here = optimum.functions(program)
     entries = []
@@ -149,8 +158,9 @@ def sensitivities(gait: Gait) -> Sensitivities:
         )
     entries.sort(key=lambda entry: -abs(entry.cost_change))
     return Sensitivities(
-        tuple(entries), float(here.cost), float(here.energy), optimum.stationarity, _title(gait)
-    )
+        tuple(entries), float(here.cost), float(here.energy), optimum.stationarity, exact,
+        _title(gait),
+    )  # fmt: skip
 
 
 def _optimum(gait: Gait) -> Optimum:

@@ -304,7 +304,7 @@ def made_up(energies=(1.0, -30.0, 2.0)) -> Sensitivities:
         Sensitivity(f"thing {k}", "walk", "m", 2.0, 10 * cost, 10 * energy, 0.1, cost, energy)
         for k, (cost, energy) in enumerate(zip(changes, energies, strict=True))
     )
-    return Sensitivities(entries, 4.0, 350.0, 1e-5, "somebody")
+    return Sensitivities(entries, 4.0, 350.0, 1e-5, True, "somebody")
 
 
 def test_the_longest_bars_are_on_top_and_both_panels_have_their_own_order():

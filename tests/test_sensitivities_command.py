@@ -40,7 +40,7 @@ def test_the_largest_are_printed_and_all_are_written(folder, capsys, monkeypatch
         Sensitivity(f"thing {k}", "walk", "m", 2.0, -0.5 * k, 3.0, 0.1, -0.05 * k, 0.3)
         for k in (3, 2, 1)
     )
-    answers = Sensitivities(entries, 4.0, 350.0, 1e-5, "somebody")
+    answers = Sensitivities(entries, 4.0, 350.0, 1e-5, True, "somebody")
     monkeypatch.setattr(Gait, "sensitivities", lambda gait: answers)
     assert run(str(folder), "--count", "2", "-o", str(folder / "new")) == 0
     printed = capsys.readouterr().out

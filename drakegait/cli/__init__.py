@@ -19,7 +19,8 @@ from drakegait.cli.app import app
 from drakegait.errors import DrakegaitError
 
 __all__ = [
-    "app", "compare", "export", "import_", "look", "main", "paper", "sensitivities", "sweep", "walk",
+    "app", "compare", "export", "import_", "look", "main", "paper", "sensitivities", "sweep",
+    "walk",
 ]  # fmt: skip
 
 BAD_INPUT, INTERRUPTED = 2, 130

@@ -30,7 +30,8 @@ def print_sensitivities(name: str, folder: str | None, count: int) -> None:
         answers = gait.sensitivities()
     screen.print(
         f"f = {answers.cost:.4g}, cost of transport {answers.energy:.1f} J/m; what is left of the "
-        f"optimality conditions: {answers.stationarity:.1g} of the gradient.",
+        f"optimality conditions: {answers.stationarity:.1g} of the gradient"
+        + ("." if answers.exact else "; dE/dp are estimates (docs/sensitivities.md)."),
         markup=False, soft_wrap=True,
     )  # fmt: skip
     screen.print(_table(answers, count))

@@ -10,7 +10,9 @@ rows and the curvatures S = multiplier / distance of the barriers of variables (
         [ J              -1/T ]                          -dg + (T_L db_L + T_U db_U) / T )
 
 and with the adjoint K (a, b) = (grad E, 0) the change of E(x) is dE + (a, b) . (right-hand side).
-Bounds that are active stay so: kinks where one comes or goes are beyond the first order.
+Bounds that are active stay so: kinks where one comes or goes are beyond the first order. Where the
+optimum is not known exactly, neither are the weakly active bounds, and the answers would jump with
+them; a wider barrier lets them count in part.
 """
 
 from __future__ import annotations
@@ -29,27 +31,40 @@ _REGULARISATION = 1e-9  # on the diagonal, so that rows which repeat each other 
 
 
 class KktSystem:
-    """The linearised KKT conditions of an optimum with lifted multipliers."""
+    """The linearised KKT conditions of an optimum with lifted multipliers.
 
-    def __init__(self, optimum: Optimum):
+    Args:
+        optimum: a program and its multipliers.
+        barrier: move all multipliers and distances to the central path of this barrier
+            parameter; default: as the solver left them.
+    """
+
+    def __init__(self, optimum: Optimum, barrier: float | None = None):
         program, kkt = optimum.program, optimum.multipliers
         design, x = program.design, kkt.x
         self._optimum = optimum
-        self._lower = kkt.lower / np.maximum(x - design.lower, _LEAST_DISTANCE)
-        self._upper = kkt.upper / np.maximum(design.upper - x, _LEAST_DISTANCE)
-        barrier = self._barrier()
-        equality = program.lower == program.upper
-        # The distance of a row from its bound is known less well than its multiplier: with
-        # multiplier times distance = barrier parameter, T = multiplier^2 / barrier parameter.
-        self._row_upper = np.maximum(kkt.rows, 0.0) ** 2 / barrier
-        self._row_lower = np.minimum(kkt.rows, 0.0) ** 2 / barrier
+        pull_down, pull_up = np.maximum(-kkt.rows, 0.0), np.maximum(kkt.rows, 0.0)
+        if barrier is None:
+            self._lower = kkt.lower / np.maximum(x - design.lower, _LEAST_DISTANCE)
+            self._upper = kkt.upper / np.maximum(design.upper - x, _LEAST_DISTANCE)
+            # The distance of a row from its bound is known less well than its multiplier: with
+            # multiplier times distance = barrier parameter, T = multiplier^2 / parameter.
+            parameter = self._barrier()
+            self._row_lower, self._row_upper = pull_down**2 / parameter, pull_up**2 / parameter
+        else:
+            rows = program.rows(x)
+            self._lower = _centred(x - design.lower, kkt.lower, barrier)
+            self._upper = _centred(design.upper - x, kkt.upper, barrier)
+            self._row_lower = _centred(rows - program.lower, pull_down, barrier)
+            self._row_upper = _centred(program.upper - rows, pull_up, barrier)
         stiffness = np.maximum(self._row_lower + self._row_upper, 1.0 / _LARGEST_COMPLIANCE)
-        self._compliance = np.where(equality, 0.0, 1.0 / stiffness)
-        self._equality = equality
+        self._equality = program.lower == program.upper
+        self._compliance = np.where(self._equality, 0.0, 1.0 / stiffness)
         self._matrix = self._assemble()
         self._factors = scipy.sparse.linalg.splu(self._matrix)
 
     def _barrier(self) -> float:
+        """The solver's barrier parameter, from the products of multiplier and distance."""
         kkt, design = self._optimum.multipliers, self._optimum.program.design
         with np.errstate(invalid="ignore"):
             products = np.concatenate(
@@ -85,10 +100,15 @@ class KktSystem:
         rows = np.zeros(self._optimum.program.num_constraints)
         return self.solve(np.concatenate([gradient, rows]))
 
-    def energy_adjoint(self) -> np.ndarray:
-        """(a, b) of the cost of transport E^t [J/m]."""
+    def energy_adjoint(self) -> np.ndarray | None:
+        """(a, b) of the cost of transport E^t [J/m].
+
+        None where the Lagrangian curves downwards along the answer: it is no minimum there.
+        """
         program, x = self._optimum.program, self._optimum.multipliers.x
-        return self.adjoint(program.cost_gradient(energy_of(program), x))
+        gradient = program.cost_gradient(energy_of(program), x)
+        found = self.adjoint(gradient)
+        return found if gradient @ found[: len(x)] > 0.0 else None
 
     def right_hand_side(self, change: Functions) -> np.ndarray:
         """What a change of the program pushes on the KKT conditions."""
@@ -96,3 +116,15 @@ class KktSystem:
         held = self._row_lower * change.row_lower + self._row_upper * change.row_upper
         moved = np.where(self._equality, change.row_lower, self._compliance * held)
         return np.concatenate([variables, moved - change.rows])
+
+
+def _centred(distance: np.ndarray, multiplier: np.ndarray, barrier: float) -> np.ndarray:
+    """Curvature of a bound on the central path, where multiplier times distance = barrier.
+
+    The point keeps the difference of the two, which tells whether the bound is active.
+    """
+    distance = np.maximum(distance, 0.0)
+    with np.errstate(invalid="ignore"):
+        apart = distance - multiplier
+        moved = 0.5 * (apart + np.sqrt(apart**2 + 4.0 * barrier))
+    return np.where(np.isfinite(distance), barrier / moved**2, 0.0)

@@ -32,7 +32,9 @@ _LOCAL = {
     "distributed.worker.profile.enabled": False,  # a twentieth
     "distributed.worker.multiprocessing-method": "spawn",
     "distributed.scheduler.worker-saturation": 1.0,  # a worker that dies takes only its own study
+    "distributed.deploy.lost-worker-timeout": "1 day",  # starting can take long, see Place.revive
 }
+_ENDED = ("closed", "failed")
 
 
 class ClusterLost(DrakegaitError):
@@ -66,14 +68,14 @@ class Place:
 
     def __init__(self, client: Client, cluster: LocalCluster | None = None):
         self.client, self._cluster = client, cluster
+        self._number = 0 if cluster is None else len(cluster.workers)
         self._stuck: set[Any] = set()
 
     @property
     def cores(self) -> int:
         """How many solves run at once."""
-        if self._cluster is not None:
-            return len(self._cluster.workers)  # also those that are being started again
-        return sum(self.client.nthreads().values())
+        # Here also those count that are being started again.
+        return self._number or sum(self.client.nthreads().values())
 
     @property
     def room(self) -> int:
@@ -87,15 +89,25 @@ class Place:
     def revive(self) -> None:
         """Start again what Dask has not; to be called now and then.
 
-        Dask starts a worker again whose process has ended, but not one that ended while it
-        started. Whoever is found without a process twice in a row is such a one.
+        Dask starts a worker again whose process has ended, but not one that ended while it was
+        being started, which on a busy machine can last until its first study, and not one whose
+        keeper (nanny) has given up.
         """
-        if self._cluster is None:
-            return
-        dead = {nanny for nanny in self._cluster.workers.values() if _is_dead(nanny)}
-        for nanny in dead & self._stuck:
-            self._cluster.loop.add_callback(nanny.instantiate)
-        self._stuck = dead - self._stuck
+        if self._cluster is not None:
+            self._cluster.loop.add_callback(self._revive)
+
+    async def _revive(self) -> None:
+        cluster, nannies = self._cluster, self._cluster.workers
+        for name in [name for name, nanny in nannies.items() if nanny.status.name in _ENDED]:
+            del nannies[name]
+        if len(nannies) < self._number and cluster.status.name == "running":
+            cluster.scale(self._number)
+        dead = {nanny for nanny in nannies.values() if _is_dead(nanny)}
+        again = dead & self._stuck  # twice in a row: nobody else is about to start it
+        self._stuck = dead - again
+        for nanny in again:
+            with contextlib.suppress(Exception):  # then it has given up: see above
+                await nanny.instantiate()
 
 
 def _is_dead(nanny: Any) -> bool:
@@ -178,7 +190,7 @@ def _silence() -> Iterator[None]:
 def _kill(cluster: LocalCluster) -> None:
     """End the workers at once; asked politely they would finish their solve first."""
     for nanny in cluster.workers.values():
-        nanny.auto_restart = False
+        nanny.close_gracefully()  # so that it starts no other
         process = getattr(getattr(nanny, "process", None), "process", None)
         pid = getattr(process, "pid", None)
         if pid:

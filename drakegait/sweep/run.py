@@ -218,8 +218,9 @@ class _Run:
         from distributed import KilledWorker
 
         try:
-            if future.status == "finished":
-                return worker.answer_of(client, name, self._topic)
+            answer = worker.answer_of(client, name, self._topic)
+            if answer is not None:  # even if the worker, and with it the future, is lost by now
+                return answer
             if future.status != "error":
                 raise _lost()
             error = future.exception()

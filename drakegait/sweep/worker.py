@@ -97,9 +97,11 @@ def run(task: bytes, name: str, topic: str, expected: tuple[str, str]) -> None:
     client.set_metadata([topic, name], pickle.dumps(answer))
 
 
-def answer_of(client: Client, name: str, topic: str) -> Answer:
-    """The answer that `run` has left, which is taken away."""
-    content = client.get_metadata([topic, name])
+def answer_of(client: Client, name: str, topic: str) -> Answer | None:
+    """The answer that `run` has left, which is taken away; None if there is none."""
+    content = client.get_metadata([topic, name], None)
+    if content is None:
+        return None
     client.set_metadata([topic, name], b"")
     return pickle.loads(content)
 

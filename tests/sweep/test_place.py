@@ -48,6 +48,20 @@ def test_a_scheduler_that_goes_away_ends_the_sweep_and_costs_nothing(
     assert result.failures == {} and cases.trace(traces, "end") == ["1", "1.1"]
 
 
+def test_a_worker_whose_keeper_has_given_up_is_replaced():
+    pytest.importorskip("distributed")
+    with cluster.connected(1, None, 1) as place:
+        local = place.client.cluster
+        local.sync(next(iter(local.workers.values())).close)
+
+        def is_back():
+            place.revive()
+            return sum(place.client.nthreads().values()) == 1
+
+        cases.wait_for(is_back, "another worker")
+        assert place.cores == 1
+
+
 def test_workers_of_another_version_are_refused(tmp_path, traces, scheduler, monkeypatch):
     monkeypatch.setattr("drakegait.__version__", "9.9")  # here, not there
     with pytest.raises(cluster.ClusterLost, match=r"has drakegait .* on Python .*, not 9\.9 on"):

@@ -1,0 +1,110 @@
+"""`drakegait paper`: solve what is open, judge the claims, write the page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from drakegait.commands.screen import console
+from drakegait.commands.sweep import SweepDisplay
+from drakegait.errors import BadFile, InvalidInput
+from drakegait.paper import document, page
+from drakegait.paper.chapter import Chapter
+from drakegait.paper.contents import CHAPTERS
+from drakegait.paper.results import Results
+from drakegait.paper.run import chapter_named, run
+from drakegait.paper.verdict import Verdict
+from drakegait.sweep.progress import SweepProgress
+from drakegait.sweep.store import write_bytes
+
+INTERRUPTED = 130
+PAGE, NUMBERS, SOLVES = "paper.html", "paper_results.json", "solves"
+_COLOURS = {Verdict.YES: "green", Verdict.NO: "red"}
+
+
+def paper(
+    out: str,
+    only: Sequence[str],
+    workers: int | None,
+    scheduler: str | None,
+    retry_failed: bool,
+    docs: str | None,
+) -> int:
+    """Run the chapters and write the page; returns the exit code."""
+    chapters = [chapter_named(name, CHAPTERS) for name in only] or list(CHAPTERS)
+    if docs is not None:
+        _check_docs(Path(docs), only)
+    folder, screen = Path(out).expanduser(), console()
+    stages = _Stages(screen)
+    try:
+        results = run(
+            chapters, folder / SOLVES, workers=workers, scheduler=scheduler,
+            retry_failed=retry_failed, report=stages.report, stage=stages.begin,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        text = f"Interrupted: finished studies are kept in {folder}. The same command goes on."
+        screen.print(text, markup=False, soft_wrap=True)
+        return INTERRUPTED
+    finally:
+        stages.end()
+    results.save(folder / NUMBERS)
+    write_bytes(folder / PAGE, page.render(chapters, results).encode())
+    _print(screen, chapters, results)
+    screen.print(f"{folder / PAGE}", markup=False, soft_wrap=True)
+    if docs is not None:
+        results.save(Path(docs) / NUMBERS)
+        document.update(Path(docs) / "paper.md", document.text(chapters, results))
+        screen.print(f"{Path(docs) / 'paper.md'}", markup=False, soft_wrap=True)
+    return 0
+
+
+def _check_docs(folder: Path, only: Sequence[str]) -> None:
+    """Refuse what would be refused after an hour."""
+    if only:
+        raise InvalidInput("--docs", str(folder), "given without --only, as it holds all chapters")
+    if not (folder / "paper.md").is_file():
+        raise BadFile(folder / "paper.md", "is not there; --docs is the folder that has it.")
+
+
+class _Stages:
+    """A display for each sweep, with its notes and a heading."""
+
+    def __init__(self, screen: Console):
+        self._screen = screen
+        self._display: SweepDisplay | None = None
+
+    def begin(self, sentence: str) -> None:
+        """Another sweep begins."""
+        self.end()
+        self._screen.print(sentence, markup=False, soft_wrap=True)
+        self._display = SweepDisplay(self._screen)
+        self._display.__enter__()
+
+    def report(self, progress: SweepProgress) -> None:
+        """Show how far it is."""
+        if self._display is not None:
+            self._display.report(progress)
+
+    def end(self) -> None:
+        """The sweep has ended."""
+        if self._display is not None:
+            self._display.__exit__(None, None, None)
+            self._display = None
+
+
+def _print(screen: Console, chapters: Sequence[Chapter], results: Results) -> None:
+    table = Table(box=None, pad_edge=False)
+    for head in ("same direction", "claim", "ours"):
+        table.add_column(head, overflow="fold")
+    everything = []
+    for chapter in chapters:
+        for item in results.findings(chapter):
+            everything.append(item)
+            colour = _COLOURS.get(item.verdict, "")
+            table.add_row(Text(item.verdict.value, colour), Text(item.claim.what), Text(item.ours))
+    screen.print(table)
+    screen.print(document.headline(everything), markup=False, soft_wrap=True)

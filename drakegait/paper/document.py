@@ -1,0 +1,83 @@
+"""The generated part of docs/paper.md: claims and tables, from the same findings as the page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from drakegait.errors import BadFile
+from drakegait.paper.chapter import Chapter
+from drakegait.paper.claim import Finding
+from drakegait.paper.results import Results
+from drakegait.paper.verdict import Verdict
+from drakegait.sweep.store import write_bytes
+
+BEGIN, END = "<!-- paper:begin -->", "<!-- paper:end -->"
+ORDER = (Verdict.YES, Verdict.PARTLY, Verdict.UNCLEAR, Verdict.NO, Verdict.NOT_RUN)
+
+
+def headline(findings: Sequence[Finding]) -> str:
+    """How many of the paper's claims hold, in a sentence."""
+    judged = [item for item in findings if item.claim.of_the_paper]
+    counts = {verdict: sum(item.verdict is verdict for item in judged) for verdict in ORDER}
+    parts = [f"{verdict.value}: {count}" for verdict, count in counts.items() if count]
+    return f"Same direction as the paper in {len(judged)} claims: {', '.join(parts)}."
+
+
+def text(chapters: Sequence[Chapter], results: Results) -> str:
+    """The section between the markers, without them."""
+    everything = [item for chapter in chapters for item in results.findings(chapter)]
+    lines = [headline(everything), "", _made(results), ""]
+    for chapter in chapters:
+        numbers = results.numbers.get(chapter.name)
+        lines += [f"## {chapter.title}", ""]
+        place = f"Paper: {chapter.place}. " if chapter.place != "-" else ""
+        lines += [f"{place}{chapter.about} Program: `examples/paper/{chapter.program}`.", ""]
+        lines += _markdown(
+            ("claim", "where", "paper", "ours", "same direction", "why they differ"),
+            [
+                (item.claim.what, item.claim.where, item.claim.paper or "no number", item.ours,
+                 f"**{item.verdict.value}**", item.claim.why)
+                for item in results.findings(chapter)
+            ],
+        )  # fmt: skip
+        rules = [item.claim for item in results.findings(chapter) if item.claim.rule]
+        lines += ["", "Judged by:", ""] if rules else []
+        lines += [f"- {claim.what}: {claim.rule}." for claim in rules]
+        if chapter.tables is not None and numbers is not None:
+            for table in chapter.tables(numbers):
+                lines += ["", f"**{table.title}**", "", *_markdown(table.heads, table.rows)]
+                lines += ["", table.note] if table.note else []
+        lines.append("")
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def update(path: Path, content: str) -> None:
+    """Put the section between the markers of a file that has them; raises BadFile."""
+    try:
+        whole = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise BadFile(path, f"cannot be read ({error.strerror or error}).") from None
+    if whole.count(BEGIN) != 1 or whole.count(END) != 1 or whole.index(END) < whole.index(BEGIN):
+        raise BadFile(path, f"lacks the lines {BEGIN} and {END}, in this order.")
+    before, rest = whole.split(BEGIN)
+    after = rest.split(END)[1]
+    write_bytes(path, f"{before}{BEGIN}\n{content}{END}{after}".encode())
+
+
+def _made(results: Results) -> str:
+    made = results.made
+    if not made:
+        return ""
+    versions = made.get("versions", {})
+    named = ", ".join(f"{name} {versions[name]}" for name in ("drakegait", "drake", "casadi")
+                      if name in versions)  # fmt: skip
+    place = f"{made.get('cores')} cores ({made.get('system')})"
+    return f"Run of {made.get('date')} on {place}: {named}."
+
+
+def _markdown(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    def line(cells: Sequence[str]) -> str:
+        return "| " + " | ".join(cell.replace("|", "\\|") or " " for cell in cells) + " |"
+
+    return [line(heads), "|" + "---|" * len(heads), *(line(row) for row in rows)]

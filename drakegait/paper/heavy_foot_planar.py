@@ -1,0 +1,119 @@
+"""Figures 6 to 8: 2 kg on the right foot, in the plane, against a symmetric reference."""
+
+from __future__ import annotations
+
+from drakegait.gait import Gait
+from drakegait.paper import charts, tables, verdict
+from drakegait.paper.bases import WEIGHT
+from drakegait.paper.chapter import Chapter, Studies
+from drakegait.paper.claim import Claim
+from drakegait.paper.convergence import FINEST
+from drakegait.paper.heavy_foot import (
+    FORCE,
+    LIFTS_LESS,
+    SENSE,
+    energy_and_deviation,
+    measure_of,
+    pair,
+)  # fmt: skip
+from drakegait.paper.numbers import Gaits, Numbers
+from drakegait.paper.own_reference import reference_of
+from drakegait.study import GaitStudy
+
+NORMAL, HEAVY = "planar", "planar 2 kg"
+NODES = 18
+
+
+def studies(symmetric: Gait) -> Studies:
+    """Both walks; the reference is the symmetric gait with 35 nodes."""
+    normal = GaitStudy.planar(nodes=NODES, reference=reference_of(symmetric, FINEST))
+    return {NORMAL: normal, HEAVY: normal.with_added_mass("foot_r", WEIGHT)}
+
+
+def _both(gaits: Gaits) -> dict[str, Gait]:
+    return {"no weight": gaits[NORMAL], "2 kg on the right foot": gaits[HEAVY]}
+
+
+def _adapts(n: Numbers) -> str:
+    knee, ankle = n["change of knee_flexion_l"], n["change of ankle_dorsiflexion_l"]
+    return f"knee {knee:.1f}, ankle {ankle:.1f} degrees (root mean square)"
+
+
+CHAPTER = Chapter(
+    name="heavy-foot-planar",
+    title="A heavy foot in the plane",
+    place="4.2, figures 6 to 8",
+    about="The planar walker with independent legs and 18 nodes, with and without 2 kg on the "
+    "right foot. The reference is the symmetric gait with 35 nodes, which cannot bring asymmetry. "
+    "Each walk starts from the usual guess or from the unweighted one.",
+    studies=studies,
+    after=(FINEST,),
+    names=(NORMAL, HEAVY),
+    warm={HEAVY: NORMAL},
+    measures=(measure_of(NORMAL, HEAVY),),
+    claims=(
+        *energy_and_deviation(
+            NORMAL, HEAVY, "4.2", {"energy": (374.94, 418.49), "deviation": (2.11, 3.07)}
+        ),
+        LIFTS_LESS,
+        Claim(
+            "Right ankle dorsiflexion in phases 4 to 6 rises",
+            "4.2, figure 6", "",
+            pair("right dorsiflexion phases 4-6", "degrees"),
+            lambda n: verdict.grows(n["right dorsiflexion phases 4-6 normal"],
+                                    n["right dorsiflexion phases 4-6 heavy"], SENSE),
+            "yes: its mean over these phases grows by more than 1 degree",
+        ),
+        Claim(
+            "The left knee and ankle adapt",
+            "4.2, figure 6", "", _adapts,
+            lambda n: verdict.every(*(
+                verdict.grows(0.0, n[f"change of {name}_l"], SENSE)
+                for name in ("knee_flexion", "ankle_dorsiflexion"))),
+            "yes: both change by more than 1 degree (root mean square over the stride)",
+        ),
+        Claim(
+            "The left knee is extended in left stance",
+            "4.2, figure 6", "",
+            pair("left knee flexion in left stance", "degrees"),
+            lambda n: verdict.grows(n["left knee flexion in left stance heavy"],
+                                    n["left knee flexion in left stance normal"], SENSE),
+            "yes: mean flexion in left stance falls by more than 1 degree",
+        ),
+        Claim(
+            "Left ankle flexion grows in left stance",
+            "4.2, figure 6", "",
+            pair("left dorsiflexion in left stance", "degrees"),
+            lambda n: verdict.grows(n["left dorsiflexion in left stance normal"],
+                                    n["left dorsiflexion in left stance heavy"], SENSE),
+            "yes: mean dorsiflexion in left stance grows by more than 1 degree",
+        ),
+        Claim(
+            "Right muscles work wider",
+            "4.2, figure 8", "", pair("right excitation width", "% of the stride"),
+            lambda n: verdict.rises(n["right excitation width normal"],
+                                    n["right excitation width heavy"]),
+            "yes: time with an excitation above 0.1, mean of the right muscles, grows by over 1 %",
+        ),
+        Claim(
+            "Right muscles work higher",
+            "4.2, figure 8", "", pair("right excitation height", "", 3),
+            lambda n: verdict.rises(n["right excitation height normal"],
+                                    n["right excitation height heavy"]),
+            "yes: largest excitation, mean of the right muscles, grows by over 1 %",
+        ),
+        Claim(
+            "The right normal force rises at the end of right stance",
+            "4.2, figure 7", "", pair("right late stance force", "% BW"),
+            lambda n: verdict.grows(n["right late stance force normal"],
+                                    n["right late stance force heavy"], FORCE),
+            "yes: its mean over the last quarter of stance grows by more than 0.5 % of body weight",
+        ),
+    ),
+    tables=lambda n: [tables.studies(n, [FINEST, NORMAL, HEAVY])],
+    figures={
+        "Joint angles (figure 6)": lambda gaits, _: charts.joint_angles(_both(gaits)),
+        "Ground reactions (figure 7)": lambda gaits, _: charts.ground_reactions(_both(gaits)),
+        "Excitations (figure 8)": lambda gaits, _: charts.excitations(_both(gaits)),
+    },
+)  # fmt: skip

@@ -1,0 +1,119 @@
+"""Figures 9 to 13: 2 kg on the right foot, in space, against the measured stride."""
+
+from __future__ import annotations
+
+from drakegait.gait import Gait
+from drakegait.paper import charts, heavy_foot_planar, tables, verdict
+from drakegait.paper.bases import WEIGHT
+from drakegait.paper.chapter import Chapter, Studies
+from drakegait.paper.claim import Claim
+from drakegait.paper.heavy_foot import (
+    LIFTS_LESS,
+    SENSE,
+    energy_and_deviation,
+    measure_of,
+    pair,
+)  # fmt: skip
+from drakegait.paper.numbers import Gaits, Numbers
+from drakegait.study import GaitStudy
+
+NORMAL, HEAVY = "spatial", "spatial 2 kg"
+NODES = 18
+_PLANAR = (heavy_foot_planar.NORMAL, heavy_foot_planar.HEAVY)
+
+
+def studies() -> Studies:
+    """Both walks, against the embedded measured stride."""
+    normal = GaitStudy.spatial(nodes=NODES)
+    return {NORMAL: normal, HEAVY: normal.with_added_mass("foot_r", WEIGHT)}
+
+
+def _both(gaits: Gaits) -> dict[str, Gait]:
+    return {"no weight": gaits[NORMAL], "2 kg on the right foot": gaits[HEAVY]}
+
+
+def _less(name: str, unit: str, digits: int = 1):
+    """Text and verdict of: in space smaller than in the plane."""
+
+    def text(n: Numbers) -> str:
+        return (
+            f"plane {n['planar: ' + name]:.{digits}f}, space {n[name]:.{digits}f}"
+            f"{' ' if unit else ''}{unit}"
+        )
+
+    return text, lambda n: verdict.falls(n["planar: " + name], n[name], 0.05)
+
+
+def _shared(n: Numbers) -> str:
+    return (
+        f"plane {n['planar: angles that share the change']:.1f} of {n['planar: angles']:.0f}, "
+        f"space {n['angles that share the change']:.1f} of {n['angles']:.0f}"
+    )
+
+
+_REACTIONS = _less("change of reactions", "% BW")
+_SMALLER = _less("mean change of angles", "degrees")
+_LEFT = _less("change of left excitations", "", 3)
+
+CHAPTER = Chapter(
+    name="heavy-foot-spatial",
+    title="A heavy foot in space",
+    place="4.3, figures 9 to 13",
+    about="The three-dimensional walker with independent legs and 18 nodes, with and without 2 kg "
+    "on the right foot; the reference is the embedded measured stride. Changes are compared with "
+    "those of the planar walker (4.2).",
+    studies=studies,
+    warm={HEAVY: NORMAL},
+    compares=_PLANAR,
+    measures=(measure_of(NORMAL, HEAVY), measure_of(*_PLANAR, prefix="planar: ")),
+    claims=(
+        *energy_and_deviation(
+            NORMAL, HEAVY, "4.3", {"energy": (569.56, 631.14), "deviation": (3.06, 3.40)}
+        ),
+        LIFTS_LESS,
+        Claim(
+            "The largest right dorsiflexion rises",
+            "4.3, figure 10", "", pair("largest right dorsiflexion", "degrees"),
+            lambda n: verdict.grows(n["largest right dorsiflexion normal"],
+                                    n["largest right dorsiflexion heavy"], SENSE),
+            "yes: by more than 1 degree",
+        ),
+        Claim(
+            "Tibialis anterior is excited more between 60 and 70 % of the stride",
+            "4.3, figure 12", "", pair("tibialis anterior 60-70", "", 2),
+            lambda n: verdict.grows(n["tibialis anterior 60-70 normal"],
+                                    n["tibialis anterior 60-70 heavy"], 0.02),
+            "yes: its largest excitation there grows by more than 0.02",
+        ),
+        Claim(
+            "Ground reactions change less than in the planar model",
+            "4.3 and 5", "", *_REACTIONS,
+            "yes: root mean square change of vertical and fore-aft forces smaller by over 5 %",
+        ),
+        Claim(
+            "Left excitations change less than in the planar model",
+            "4.3, figure 13", "", *_LEFT,
+            "yes: root mean square change smaller by over 5 %",
+        ),
+        Claim(
+            "Variations of the coordinates are smaller than in the plane",
+            "5", "", *_SMALLER,
+            "yes: root mean square change, mean of all angles, smaller by over 5 %",
+        ),
+        Claim(
+            "The adaptation is spread over more coordinates",
+            "4.3 and 5", "", _shared,
+            lambda n: verdict.rises(n["planar: angles that share the change"],
+                                    n["angles that share the change"], 0.05),
+            "yes: (sum d^2)^2 / sum d^4 of the changes d of all angles is larger by over 5 %",
+        ),
+    ),
+    tables=lambda n: [tables.studies(n, [NORMAL, HEAVY, *_PLANAR])],
+    figures={
+        "Joint angles (figures 9, 10)": lambda gaits, _: charts.joint_angles(_both(gaits)),
+        "Out of the sagittal plane": lambda gaits, _: charts.other_angles(_both(gaits)),
+        "Trunk": lambda gaits, _: charts.trunk(_both(gaits)),
+        "Ground reactions (figure 11)": lambda gaits, _: charts.ground_reactions(_both(gaits)),
+        "Excitations (figures 12, 13)": lambda gaits, _: charts.excitations(_both(gaits)),
+    },
+)  # fmt: skip
