@@ -30,7 +30,7 @@ def test_importing_the_package_loads_nothing_else():
     subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)
 
 
-@pytest.mark.parametrize("name", ["check", "replay", "solve"])
+@pytest.mark.parametrize("name", ["check", "replay", "solve", "sweep"])
 def test_importing_the_file_does_not_hide_the_function(name):
     code = (
         f"import drakegait.{name}\n"

@@ -9,6 +9,7 @@ Exit codes: 0 done; 2 bad input (one sentence on stderr, nothing solved, nothing
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import Any
 
@@ -24,6 +25,10 @@ __all__ = [
 ]  # fmt: skip
 
 BAD_INPUT, INTERRUPTED = 2, 130
+
+# Matrices here are small: a second thread costs more than it brings, and sums in another order end
+# at another optimum. Read when NumPy is loaded, which no command has done yet.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Typer's errors about options derive from these; where Typer keeps them depends on its version.
 _USAGE_ERROR = typer.BadParameter.__mro__[1]
 _COMMAND_LINE_ERROR = typer.BadParameter.__mro__[2]

@@ -98,8 +98,8 @@ CHAPTER = Chapter(
     place="2, 3 and 5",
     about="Symmetric in the plane, 19 nodes (the sequence: in space), IPOPT with MUMPS from the "
     "reference, no control points added, at most 300 iterations and 300 s each. lm: second "
-    "derivatives from limited "
-    "memory, as the paper's SQP had them. Times hang on what else the machine did.",
+    "derivatives from limited memory, as the paper's SQP had them. Times hang on what else the "
+    "machine did.",
     studies=studies,
     options=OPTIONS,
     refine=False,

@@ -17,7 +17,7 @@ SETTINGS = {
     "C.1 as printed": {"activation_dynamics": "printed"},
     "full width": {"width": "full"},
     "least force 0.002": {"min_force": 0.002},
-    "least force 0.00005": {"min_force": 0.00005},
+    "least force 5e-5": {"min_force": 0.00005},
     "force-velocity floor 0.05": {"force_velocity_floor": 0.05},
     "energy of 2010": {"energy.model": "umberger2010"},
     "heat floor before S": {"heat_floor": "activation"},

@@ -59,7 +59,7 @@ def check_place(workers: int | None, scheduler: str | None) -> None:
         import distributed  # noqa: F401
     except ImportError:
         raise DrakegaitError(
-            "A sweep needs the package distributed: pip install 'drakegait[sweep]'."
+            "A sweep needs the package distributed: pip install distributed."
         ) from None
 
 

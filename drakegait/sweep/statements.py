@@ -10,18 +10,21 @@
     set.friction = 0.4               every constant and solver option that --set knows
     solver = "snopt", time_limit = 600.0
     reference, sdf                   a file beside the sweep's file; reference also by its name
+    weakness.soleus_l = 0.5          a disorder, as its option takes it: range.knee_l = [5, 45], ...
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from drakegait.commands.disorder_options import READERS
 from drakegait.errors import BadFile, InvalidInput, UnknownName
 from drakegait.reference.embedded import GAITS
+from drakegait.reference.netcdf_file import is_netcdf, read_subject
 from drakegait.reference.reference import Reference
 from drakegait.settings import find
 from drakegait.solvers.options import SolverOptions
@@ -33,13 +36,14 @@ _GROUPS = {**SETTINGS_GROUPS, "subject": Subject}
 _ALIASES = ("height", "mass", "weights", "added_mass", "muscle", "limit", "set", "solver",
             "time_limit")  # fmt: skip
 _UNWRITTEN = ("subject", "limits", "muscle_changes")  # fields that have an alias
-_TABLES = ("added_mass", "strength", "muscle", "limit", "set", *_GROUPS)
+_DISORDERS = {name.strip("_"): name for name in READERS}
+_TABLES = ("added_mass", "strength", "muscle", "limit", "set", *_GROUPS, *_DISORDERS)
 
 
 def known() -> list[str]:
     """The names that a statement can begin with."""
     names = [item.name for item in fields(GaitStudy) if item.name not in _UNWRITTEN]
-    return sorted({*names, *_ALIASES})
+    return sorted({*names, *_ALIASES, *_DISORDERS})
 
 
 def flatten(table: Mapping[str, Any]) -> dict[str, Any]:
@@ -80,6 +84,9 @@ def _inner(name: str, table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _example(head: str) -> str:
+    if head in _DISORDERS:
+        form, value = READERS[_DISORDERS[head]][0][1].split("=")
+        return f"{head}.{form} = {value if value.replace('.', '').isdigit() else repr(value)}"
     return {
         "added_mass": "added_mass.foot_r = 2.0",
         "strength": "strength.soleus_l = 0.5",
@@ -112,17 +119,17 @@ class Statements:
         if model not in MODELS:
             raise UnknownName("model", model, MODELS)
         start = getattr(GaitStudy, model.replace("-", "_"))()  # with the nodes of its model
-        plain, options = start.to_dict(), {}
-        reference = None
+        reference = statements.get("reference")
+        plain, options = self._as_measured(start, reference).to_dict(), {}
         for name, value in statements.items():
-            if name == "reference":
-                reference = value
-            else:
-                self._put(plain, options, name, value)
+            self._put(plain, options, name, value)
         try:
             study = GaitStudy.from_dict(plain)
         except (TypeError, ValueError, AttributeError, KeyError) as error:
             raise InvalidInput("a statement", error, "of the kind that GaitStudy takes") from None
+        disorders = _disorders(statements)
+        if disorders:
+            study = study.replace(disorders=(*study.disorders, *disorders))
         if reference is not None:
             study = study.replace(reference=self._reference(reference, study))
         return study, SolverOptions(**options)
@@ -148,7 +155,7 @@ class Statements:
             special[head]()
         elif head in _GROUPS:
             _set(plain, options, name, value)
-        else:
+        elif head != "reference" and head not in _DISORDERS:
             plain[name] = value
 
     def _text(self, name: object) -> str:
@@ -157,6 +164,14 @@ class Statements:
         except (OSError, UnicodeDecodeError) as error:
             reason = getattr(error, "strerror", None) or "not text"
             raise BadFile(name, f"cannot be read ({reason}).") from None
+
+    def _as_measured(self, start: GaitStudy, reference: object) -> GaitStudy:
+        """The person and speed of an imported reference, where no statement says otherwise."""
+        if not isinstance(reference, str) or not is_netcdf(reference):
+            return start
+        path = self._folder / reference
+        speed = round(Reference.load(path, start.skeleton_kind).speed, 3)
+        return start.replace(subject=read_subject(path) or start.subject, speed=speed)
 
     def _reference(self, given: object, study: GaitStudy) -> Reference:
         """A reference, made once for all studies that agree on it."""
@@ -174,7 +189,21 @@ class Statements:
             except UnknownName as error:
                 names = (*error.known, "or the path of a file")
                 raise UnknownName("reference", str(given), names) from None
+        if is_netcdf(path):
+            return replace(Reference.load(path, kind), deviation=deviation)
         return Reference.from_table(path, kind=kind, subject=subject, deviation=deviation)
+
+
+def _disorders(statements: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Disorders as the command line reads them, in the order of the statements."""
+    found = []
+    for name, value in statements.items():
+        head, _, rest = name.partition(".")
+        if head in _DISORDERS:
+            form, read = READERS[_DISORDERS[head]]
+            text = ":".join(map(str, value)) if isinstance(value, list) else str(value)
+            found.append(read(head, f"{rest}={text}", f"{form[0]}, for example {form[1]}"))
+    return tuple(found)
 
 
 def _weights(value: Any) -> dict[str, Any]:

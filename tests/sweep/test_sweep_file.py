@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
 import pytest
 
 from drakegait import cli
+from drakegait.reference.netcdf_file import write_subject
 from drakegait.reference.reference import Reference
 from drakegait.study import GaitStudy
 from drakegait.sweep import axes, sweep_file
+from drakegait.walker import disorders as dis
 from drakegait.walker.subject import AddedMass, Subject
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -98,6 +101,53 @@ def test_every_kind_of_statement_means_what_the_command_line_means(tmp_path):
     assert axes.differences(found.studies)["strong"] == {"strength.SOL": 1.5}
 
 
+def test_disorders_are_stated_as_on_the_command_line(tmp_path):
+    found = read(tmp_path, """
+        [base]
+        model = "planar"
+        prosthesis.transtibial_r = 4
+        range.knee_l = [5, 45]
+        [grid]
+        weakness.SOL_l = [0.5, 0.8]
+        """)  # fmt: skip
+    study = GaitStudy.planar().with_disorder(
+        dis.Prosthesis("r", 4), dis.LimitedRange("knee", "l", 5.0, 45.0)
+    )
+    assert found.studies["weakness.SOL_l=0.8"] == study.with_disorder(dis.Weakness("SOL", "l", 0.8))
+    assert axes.grid(found.axes) == {"weakness.SOL_l": [0.5, 0.8]}
+    # The form of GaitStudy.to_dict is taken as well; TOML has no null.
+    plain = [
+        {name: value for name, value in disorder.items() if value is not None}
+        for disorder in found.studies["weakness.SOL_l=0.5"].to_dict()["disorders"]
+    ]
+    toml = json.dumps(plain).replace(": ", " = ")
+    again = read(
+        tmp_path, f"[base]\nmodel = 'planar'\n[[study]]\nname = 'a'\ndisorders = {toml}\n"
+    )
+    assert again.studies["a"] == found.studies["weakness.SOL_l=0.5"]
+
+
+def test_an_imported_walk_brings_its_person_and_speed(tmp_path):
+    reference = Reference.embedded("planar", Subject(height=1.6, mass=55.0))
+    write_subject(tmp_path / "me.nc", (reference,), Subject(height=1.6, mass=55.0))
+    found = read(tmp_path, """
+        [base]
+        model = "planar"
+        reference = "me.nc"
+        [[study]]
+        name = "as measured"
+        [[study]]
+        name = "heavier"
+        mass = 60
+        speed = 1.0
+        """)  # fmt: skip
+    measured, heavier = found.studies.values()
+    assert measured.subject == Subject(height=1.6, mass=55.0)
+    assert measured.speed == pytest.approx(reference.speed, abs=1e-3)
+    assert measured.reference.name == reference.name
+    assert (heavier.subject, heavier.speed) == (Subject(height=1.6, mass=60.0), 1.0)
+
+
 def test_symmetric_models_have_the_nodes_of_their_command(tmp_path):
     found = read(tmp_path, '[base]\nmodel = "planar-symmetric"\n[grid]\nspeed = [1.0]\n')
     assert found.studies["speed=1"] == GaitStudy.planar_symmetric(speed=1.0)
@@ -154,6 +204,9 @@ REFUSED = [
     ("[base]\nsdf = 'no.sdf'\n" + GRID, ["no.sdf", "cannot be read"]),
     ("[base]\nsolver = 'magic'\n" + GRID, ["solver", "'magic'", "snopt"]),
     ("[base]\nmuscle.SOL = 3\n" + GRID, ["muscle.SOL", "3", "l_slack"]),
+    ("[base]\nweakness.SOL_l = 'x'\n" + GRID, ["weakness", "'SOL_l=x'", "soleus_l=0.5"]),
+    ("[base]\nweakness = 0.5\n" + GRID, ["weakness", "0.5", "a table", "weakness.soleus_l = 0.5"]),
+    ("[base]\nreference = 'no.nc'\n" + GRID, ["no.nc", "does not exist"]),
     ("[base]\ninterior_points = 3\n" + GRID, ["[grid] speed=1", "statement"]),
     ("[sweep]\nwarm = 'nodes'\n" + GRID, ["warm in [sweep]", "'nodes'", "speed"]),
     ("[sweep]\nwarm = 3\n" + GRID, ["warm in [sweep]", "3", "an axis"]),
