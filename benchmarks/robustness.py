@@ -124,15 +124,13 @@ def _mean(group: list[dict[str, Any]], key: str) -> list[float]:
     return np.mean([r[key] for r in group], axis=0).tolist()
 
 
-def print_model(model: str, found: dict[str, Any]) -> None:
+def print_model(name: str, found: dict[str, Any]) -> None:
     """A short table."""
     summary = found["summary"]
     spread = summary["spread_percent"]
     spread = "-" if spread is None else f"{spread:.2f}"
     print(
-        f"\n{model}, {found['nodes']} nodes, {found['solver']}: "
-        f"{summary['converged_percent']:.0f} % of "
-        f"{summary['starts']} starts converged, costs within {spread} %, "
+        f"\n{name}: {summary['converged_percent']:.0f} % of {summary['starts']} starts converged, costs within {spread} %, "
         f"median {summary['median_iterations']:.0f} iterations, {summary['median_cpu_s']:.1f} s CPU"
     )
     for group in summary["clusters"]:
@@ -176,18 +174,19 @@ def main() -> None:
                 "refined": not given.no_refine,
                 "date": datetime.date.today().isoformat(), "versions": versions(), "runs": [],
             }  # fmt: skip
+            key = f"{model}, {study.nodes} nodes, {given.solver}"
             for start in starts(given.starts, given.seed):
                 record = run(study, start, options, not given.no_refine)
                 found["runs"].append(record)
                 found["summary"] = summarise(found["runs"])
-                results[model] = found
+                results[key] = found
                 save(results)
                 print(
                     f"{model}: {record['start']}: {record['status']}, f {record['cost']:.4f}, "
                     f"{record['iterations']} iterations, {record['cpu_s']:.1f} s CPU", flush=True,
                 )  # fmt: skip
-    for model, found in results.items():
-        print_model(model, found)
+    for name, found in results.items():
+        print_model(name, found)
 
 
 if __name__ == "__main__":
