@@ -134,5 +134,5 @@ def test_what_cannot_be_is_refused_before_anything_runs(tmp_path, monkeypatch, c
 
 def test_without_dask_one_sentence_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(DrakegaitError, match=r"pip install 'drakegait\[sweep\]'"):
+    with pytest.raises(DrakegaitError, match="pip install distributed"):
         sweep({"a": PLANAR}, tmp_path / "out")
