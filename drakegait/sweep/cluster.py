@@ -8,7 +8,7 @@ import multiprocessing
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from drakegait.errors import DrakegaitError, InvalidInput
@@ -20,15 +20,16 @@ if TYPE_CHECKING:
 CONNECT_SECONDS = 10.0
 """How long a scheduler has to answer."""
 ONE_THREAD = {
-    "OMP_NUM_THREADS": 1,
-    "OPENBLAS_NUM_THREADS": 1,
-    "MKL_NUM_THREADS": 1,
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
     "OMP_CANCELLATION": "TRUE",  # SPRAL in Drake's IPOPT asks for it before the first import
 }
 """Environment of a worker: a solve keeps one core busy, and BLAS must not take others."""
 _LOCAL = {
-    # Without the MALLOC_TRIM_THRESHOLD_ that Dask sets: it costs a solve a quarter of its time.
-    "distributed.nanny.pre-spawn-environ": ONE_THREAD,
+    # Not the variables that Dask sets: those of the user would come first, and its
+    # MALLOC_TRIM_THRESHOLD_ costs a solve a quarter of its time.
+    "distributed.nanny.pre-spawn-environ": {},
     "distributed.worker.profile.enabled": False,  # a twentieth
     "distributed.worker.multiprocessing-method": "spawn",
     "distributed.scheduler.worker-saturation": 1.0,  # a worker that dies takes only its own study
@@ -142,7 +143,7 @@ def _started(number: int) -> Iterator[Place]:
     import dask
     from distributed import Client, LocalCluster
 
-    with dask.config.set(_LOCAL), _silence():
+    with dask.config.set(_LOCAL), _environment(ONE_THREAD), _silence():
         try:
             cluster = LocalCluster(
                 n_workers=number,
@@ -176,15 +177,36 @@ def leave_if_imported() -> None:
 
 
 @contextlib.contextmanager
-def _silence() -> Iterator[None]:
-    """No word of Dask about connections that end: they end because we end them."""
-    logger = logging.getLogger("distributed")
-    level = logger.level
-    logger.setLevel(logging.CRITICAL)
+def _environment(variables: Mapping[str, str]) -> Iterator[None]:
+    """What processes inherit that are started meanwhile."""
+    before = {name: os.environ.get(name) for name in variables}
+    os.environ.update(variables)
     try:
         yield
     finally:
-        logger.setLevel(level)
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """No word of Dask about connections that end: we end them, or say it ourselves."""
+    names = [name for name in logging.root.manager.loggerDict if name.startswith("distributed.")]
+    levels = {
+        logger: logger.level
+        for logger in map(logging.getLogger, ["distributed", *names])
+        if logger.level or logger.name == "distributed"  # others do as the one above them
+    }
+    for logger in levels:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in levels.items():
+            logger.setLevel(level)
 
 
 def _kill(cluster: LocalCluster) -> None:
@@ -207,7 +229,7 @@ def _joined(address: str) -> Iterator[Client]:
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError):  # time-outs are OSErrors
         raise InvalidInput("scheduler", address, allowed) from None
-    with client:
+    with _silence(), client:
         _compare_versions(client)
         yield client
 

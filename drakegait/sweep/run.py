@@ -140,6 +140,12 @@ class _Run:
                 self._tell(place.cores)
                 self._wait(place)
             self._tell(place.cores)
+        except OSError:  # of the connection: files raise BadFile
+            raise _lost() from None
+        except RuntimeError:
+            if client.status == "running":
+                raise
+            raise _lost() from None
         finally:
             self._let_go(client)
 
@@ -179,7 +185,7 @@ class _Run:
             if name in self._futures or self.status.get(self.plan.warm.get(name)) == "open":
                 continue
             guess = self._guesses[name] = self._guess(name)
-            content = None if guess is None else self.store.path(guess).read_bytes()
+            content = None if guess is None else self.store.gait(guess)
             self._submitted += 1
             task = worker.Task(
                 study=self.plan.studies[name].replace(),
@@ -217,20 +223,17 @@ class _Run:
         """
         from distributed import KilledWorker
 
-        try:
-            answer = worker.answer_of(client, name, self._topic)
-            if answer is not None:  # even if the worker, and with it the future, is lost by now
-                return answer
-            if future.status != "error":
-                raise _lost()
-            error = future.exception()
-            if not isinstance(error, KilledWorker):
-                reason = f"The worker could not run it: {type(error).__name__}: {error}"
-                return worker.Answer(worker.RAISED, reason)
-            # Dask blames every study that was handed to a worker for its death, begun or not.
-            begun = len(client.get_events(f"{self._topic}/{name}"))
-        except OSError:  # of the connection
-            raise _lost() from None
+        answer = worker.answer_of(client, name, self._topic)
+        if answer is not None:  # even if the worker, and with it the future, is lost by now
+            return answer
+        if future.status != "error":
+            raise _lost()
+        error = future.exception()
+        if not isinstance(error, KilledWorker):
+            reason = f"The worker could not run it: {type(error).__name__}: {error}"
+            return worker.Answer(worker.RAISED, reason)
+        # Dask blames every study that was handed to a worker for its death, begun or not.
+        begun = len(client.get_events(f"{self._topic}/{name}"))
         if begun <= worker.RETRIES:
             return None
         return worker.Answer(worker.DIED, f"Its worker has died {begun} times.")

@@ -97,6 +97,14 @@ class Store:
             return State("open", note=f"{name}: its record is damaged or missing; solved again.")
         return State("open")
 
+    def gait(self, name: str) -> bytes:
+        """Content of a study's `gait.nc`; raises BadFile."""
+        path = self.path(name)
+        try:
+            return path.read_bytes()
+        except OSError as error:
+            raise BadFile(path, f"cannot be read ({error.strerror}).") from None
+
     def summary(self, name: str) -> dict[str, Any]:
         """`summary.json` of a study; empty if there is none that can be read."""
         return _read_json(self.path(name, SUMMARY))

@@ -31,8 +31,9 @@ def test_a_scheduler_by_address_solves_on_its_own_workers(tmp_path, traces, sche
 
 
 def test_a_scheduler_that_goes_away_ends_the_sweep_and_costs_nothing(
-    tmp_path, traces, start_cluster
+    tmp_path, traces, start_cluster, monkeypatch
 ):
+    monkeypatch.setattr(cluster, "CONNECT_SECONDS", 3.0)  # also how long it is looked for
     cases.tell(traces, "1.1", "wait")
     address, process = start_cluster()
 
@@ -48,8 +49,10 @@ def test_a_scheduler_that_goes_away_ends_the_sweep_and_costs_nothing(
     assert result.failures == {} and cases.trace(traces, "end") == ["1", "1.1"]
 
 
-def test_a_worker_whose_keeper_has_given_up_is_replaced():
+def test_a_worker_keeps_to_one_core_and_is_replaced_when_its_keeper_gives_up(monkeypatch):
     pytest.importorskip("distributed")
+    monkeypatch.setenv("OMP_NUM_THREADS", "4")
+    monkeypatch.delenv("OMP_CANCELLATION", raising=False)
     with cluster.connected(1, None, 1) as place:
         local = place.client.cluster
         local.sync(next(iter(local.workers.values())).close)
@@ -60,6 +63,10 @@ def test_a_worker_whose_keeper_has_given_up_is_replaced():
 
         cases.wait_for(is_back, "another worker")
         assert place.cores == 1
+        (found,) = place.client.run(lambda: dict(os.environ)).values()
+    assert found.items() >= cluster.ONE_THREAD.items()
+    assert "MALLOC_TRIM_THRESHOLD_" not in found
+    assert os.environ["OMP_NUM_THREADS"] == "4" and "OMP_CANCELLATION" not in os.environ
 
 
 def test_workers_of_another_version_are_refused(tmp_path, traces, scheduler, monkeypatch):
