@@ -130,8 +130,9 @@ def print_model(name: str, found: dict[str, Any]) -> None:
     spread = summary["spread_percent"]
     spread = "-" if spread is None else f"{spread:.2f}"
     print(
-        f"\n{name}: {summary['converged_percent']:.0f} % of {summary['starts']} starts converged, costs within {spread} %, "
-        f"median {summary['median_iterations']:.0f} iterations, {summary['median_cpu_s']:.1f} s CPU"
+        f"\n{name}: {summary['converged_percent']:.1f} % of {summary['starts']} starts converged, "
+        f"costs within {spread} %, median {summary['median_iterations']:.0f} iterations, "
+        f"{summary['median_cpu_s']:.1f} s CPU"
     )
     for group in summary["clusters"]:
         durations = " ".join(f"{x:.3f}" for x in group["phase_durations_s"])

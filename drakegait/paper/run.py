@@ -70,7 +70,7 @@ def run(
         result = sweep(
             studies, Path(folder) / name, warm=warm, options=options, refine=mine[0].refine,
             workers=workers, scheduler=scheduler, retry_failed=retry_failed, report=report,
-            _solve=_solve,
+            axes=_axes(mine, studies), _solve=_solve,
         )  # fmt: skip
         solved |= dict.fromkeys(studies, result)
     return _measured(chapters, solved)
@@ -112,6 +112,12 @@ def _studies(
                 raise DrakegaitError(f"Two chapters mean different studies by {name!r}.")
             found[name] = study
     return found
+
+
+def _axes(chapters: Sequence[Chapter], studies: Iterable[str]) -> dict[str, dict[str, str]]:
+    """Chapters are no grid: the table of a sweep says in which chapter a study comes first."""
+    owner = {name: c.name for c in reversed(chapters) for name in c.own_names}
+    return {name: {"chapter": owner[name]} for name in studies}
 
 
 def _measured(chapters: Sequence[Chapter], solved: Mapping[str, SweepResult]) -> Results:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 MORE_COLOUR, LESS_COLOUR = "#c8742b", "#4b8a8c"
 """Ends of the bars where the parameter is larger and where it is smaller."""
-_ROW, _PANEL, _LABELS = 0.235, 2.7, 2.75  # height of a bar's row, width of panel and labels [inch]
+_ROW, _PANEL, _LABELS = 0.235, 2.7, 3.05  # height of a bar's row, width of panel and labels [inch]
 _TOP, _BOTTOM, _RIGHT = 1.0, 0.5, 0.25  # [inch]
 
 
