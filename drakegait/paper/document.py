@@ -18,7 +18,7 @@ ORDER = (Verdict.YES, Verdict.PARTLY, Verdict.UNCLEAR, Verdict.NO, Verdict.NOT_R
 
 def headline(findings: Sequence[Finding]) -> str:
     """How many of the paper's claims hold, in a sentence."""
-    judged = [item for item in findings if item.claim.of_the_paper]
+    judged = [item for item in findings if item.claim.of_the_paper and item.claim.judge]
     counts = {verdict: sum(item.verdict is verdict for item in judged) for verdict in ORDER}
     parts = [f"{verdict.value}: {count}" for verdict, count in counts.items() if count]
     return f"Same direction as the paper in {len(judged)} claims: {', '.join(parts)}."

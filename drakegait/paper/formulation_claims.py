@@ -148,11 +148,10 @@ CHAPTER = Chapter(
             "of the paper's high values at 19 nodes.",
         ),
         Claim(
-            "Does the order of rotations, 213 or 123, matter?",
+            "Do the orders of rotation 213 and 123 lead to nearly the same walk?",
             "-", "text: 213, list of angles: 123", _costs(IN_213, IN_123),
-            lambda n: {verdict.Verdict.YES: verdict.Verdict.NO, verdict.Verdict.NO:
-                       verdict.Verdict.YES}[verdict.alike(n.cost(IN_213), n.cost(IN_123), SAME)],
-            "yes: f differs by more than 3 %",
+            lambda n: verdict.alike(n.cost(IN_213), n.cost(IN_123), SAME),
+            "yes: f differs by no more than 3 %",
         ),
     ),
     tables=lambda n: [tables.studies(n, list(studies()))],

@@ -103,9 +103,12 @@ def mean_angle(gait: Gait, name: str, phases: tuple[int, ...]) -> float:
     return float(data.coordinates.sel(coordinate=name).values[within].mean())
 
 
-def largest_angle(gait: Gait, name: str) -> float:
-    """Largest value of an angle [degree]."""
-    return float(angles(gait, [name]).max())
+def largest_angle(
+    gait: Gait, name: str, phases: tuple[int, ...] = (1, 2, 3, 4, 5, 6, 7, 8)
+) -> float:
+    """Largest value of an angle in some of the phases 1 to 8 [degree]."""
+    within = np.isin(gait.sample().phase.values, phases)
+    return float(angles(gait, [name])[within].max())
 
 
 def _excitations(gait: Gait, side: str) -> np.ndarray:

@@ -67,8 +67,8 @@ CHAPTER = Chapter(
             "5", "very small", _ours, _judge,
             "yes: list, rotation and sway each below half of their range in the reference",
             "The paper says neither how much nor against what. Our reference is the motion of a "
-            "pelvis, and to deviate from it has a price; in brackets what is left of the motion "
-            "where it has a tenth of that price.",
+            "pelvis, and to deviate from it has a price. In brackets: the motion where it has a "
+            "tenth of that price; what does not shrink then is not due to the reference alone.",
         ),
     ),
     tables=lambda n: [tables.studies(n, [SYMMETRIC, FREER])],
