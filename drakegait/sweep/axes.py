@@ -6,7 +6,6 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
-from itertools import product
 from typing import Any
 
 from drakegait.errors import InvalidInput, UnknownName
@@ -63,7 +62,8 @@ def grid(places: Places) -> dict[str, list[Any]] | None:
     axes = list(next(iter(places.values())))
     values = {axis: levels(axis, places) for axis in axes}
     combinations = {tuple(place[axis] for axis in axes) for place in places.values()}
-    whole = set(product(*values.values())) == combinations and len(combinations) == len(places)
+    # Counted, not built: unlike studies have as many levels as there are of them, on every axis.
+    whole = math.prod(map(len, values.values())) == len(combinations) == len(places)
     return values if axes and whole else None
 
 

@@ -263,3 +263,13 @@ def refused(capsys, *arguments) -> str:
     assert (ending.value.code, out) == (2, "")
     assert err.startswith("drakegait: ") and err.count("\n") == 1 and "Traceback" not in err
     return err
+
+
+def test_many_unlike_studies_are_no_grid_and_cost_no_time():
+    """Their combinations would be 40^40."""
+    unlike = {str(k): {f"axis {axis}": k for axis in range(40)} for k in range(40)}
+    assert axes.grid(unlike) is None
+    whole = {f"{a}{b}": {"a": a, "b": b} for a in (2, 1) for b in ("x", "y")}
+    assert axes.grid(whole) == {"a": [1, 2], "b": ["x", "y"]}
+    del whole["1y"]
+    assert axes.grid(whole) is None
