@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drakegait.walker.dynamics_derivatives import Motion, cross, skew
+from drakegait.walker.dynamics_derivatives import Motion, cross, cross_motion, cross_onto, skew
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +101,83 @@ class FeetGeometry:
         if not self.tilts:
             return rows
         return _with_tilts(rows, self.moves[:, None] * np.swapaxes(turned[..., :2], -1, -2))
+
+    def power_curvature(
+        self, motion: Motion, speeds: np.ndarray, multipliers: np.ndarray
+    ) -> np.ndarray:
+        """Second derivatives (..., n, n) of multipliers . C(q) speeds, both held constant.
+
+        In the words of `dynamics_curvature`: with F the forces f at points p and the moment m of
+        a foot as one spatial force, u the velocity of p and Omega the spin of the foot at the
+        speeds, and omega_i = W_p x S_i, for i on the way to j or j itself
+
+            omega_i . (S_j x* F + G w_j) + w_i . (G^T omega_j + K w_j)
+            G = ([p x][f x] + [m x], [f x]),     K = u f^T - u . f + Omega m^T - Omega . m.
+        """
+        axes, twists = motion.twists[..., :3], motion.twists
+        by_foot = multipliers[..., :14].reshape(*multipliers.shape[:-1], 2, 7)
+        forces = by_foot[..., :6].reshape(*by_foot.shape[:-1], 2, 3)
+        moments = np.zeros((*by_foot.shape[:-1], 3))
+        moments[..., 2] = by_foot[..., 6]
+        if self.tilts:
+            moments[..., :2] = multipliers[..., 14:].reshape(*moments.shape[:-1], 2)
+        points = self.contact_points(motion)
+        weighted = twists * speeds[..., None]
+        virtual = self.moves @ weighted
+        spin = virtual[..., None, :3]
+        velocities = virtual[..., None, 3:] + cross(spin, points)
+        by_force = skew(forces)
+        # Of each foot, then summed over the feet that a coordinate moves.
+        wrench = np.concatenate(
+            [cross(points, forces).sum(axis=-2) + moments, forces.sum(axis=-2)], axis=-1
+        )
+        turned = np.concatenate(
+            [(skew(points) @ by_force).sum(axis=-3) + skew(moments), by_force.sum(axis=-3)],
+            axis=-2,
+        )
+        bent = np.swapaxes(velocities, -1, -2) @ forces
+        bent = bent + np.swapaxes(spin, -1, -2) * moments[..., None, :]
+        bent = bent - np.trace(bent, axis1=-2, axis2=-1)[..., None, None] * np.eye(3)
+        lead = speeds.shape[:-1]
+        wrench = self.moves.T @ wrench
+        turned = (self.moves.T @ turned.reshape(*lead, 2, 18)).reshape(*lead, -1, 6, 3)
+        bent = (self.moves.T @ bent.reshape(*lead, 2, 9)).reshape(*lead, -1, 3, 3)
+        strict = self.inner - np.eye(len(self.inner))
+        omega = (cross_motion(strict.T @ weighted) @ twists[..., None])[..., 0]
+        along = (cross_onto(wrench) @ twists[..., None] + turned @ axes[..., None])[..., 0]
+        inside = np.swapaxes(turned, -1, -2) @ omega[..., None] + bent @ axes[..., None]
+        pairs = omega @ np.swapaxes(along, -1, -2) + axes @ np.swapaxes(inside[..., 0], -1, -2)
+        pairs = self.inner * pairs
+        return pairs + np.swapaxes(strict * pairs, -1, -2)
+
+    def position_curvature(self, motion: Motion, weights: np.ndarray) -> np.ndarray:
+        """Second derivatives (..., n, n) of the weighted contact positions.
+
+        Args:
+            weights: (..., 14) of the points' x, y, z and of the headings of the feet.
+        """
+        points = self.contact_points(motion)
+        along = points[..., 1, :] - points[..., 0, :]
+        x, y = along[..., 0], along[..., 1]
+        square = x * x + y * y
+        by_foot = weights.reshape(*weights.shape[:-1], 2, 7)
+        heading = by_foot[..., 6]
+        # The heading's gradient acts like two opposite forces on heel and toe.
+        pair = np.stack([-y * heading / square, x * heading / square, 0.0 * x], axis=-1)
+        forces = by_foot.copy()
+        forces[..., 0:3] -= pair
+        forces[..., 3:6] += pair
+        forces[..., 6] = 0.0
+        multipliers = forces.reshape(weights.shape)
+        if self.tilts:
+            none = np.zeros((*weights.shape[:-1], 4))
+            multipliers = np.concatenate([multipliers, none], axis=-1)
+        columns = self._axes_and_columns(motion)[1]
+        change = columns[..., 1, :, :2] - columns[..., 0, :, :2]
+        bend = np.stack([2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y], axis=-1)
+        bend = (bend * (heading / square**2)[..., None]).reshape(*x.shape, 2, 2)
+        bent = (change @ bend @ np.swapaxes(change, -1, -2)).sum(axis=-3)
+        return self.force_derivative(motion, multipliers) + bent
 
     def _axes_and_columns(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
         """Axes (..., n, 3) and velocities (..., 2, 2, n, 3) of the points per unit speed."""

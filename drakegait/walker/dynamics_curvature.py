@@ -1,26 +1,50 @@
-"""Second derivatives of the equations of motion and of the contact rows.
+"""Second derivatives of the equations of motion and of the contact rows, in closed form.
 
-Drake's plant gives the tree of joints and bodies; CasADi differentiates the
-virtual power of that tree twice, exactly. With virtual joint velocities w the
-equations of motion read (Jourdain's principle)
+`dynamics_derivatives` continued by one order, with its words and its sums at the world origin.
+With virtual velocities w the equations of motion are a sum over bodies (Jourdain's principle),
 
-    w . (M a + k - g) = sum_b  m_b a_b . v_b(w) + (I_b alpha_b + omega_b x I_b omega_b) . omega_b(w)
+    phi = w . (M a + k - g) = sum_b W_b . F_b,        W_b the twist of body b at the speeds w.
 
-with gravity as an upward acceleration of the ground, and a contact row contributes
-the velocity of its point, or the vertical angular velocity of its foot, at w.
-Velocities and accelerations are carried from joint to joint in the axes of each
-link (Featherstone 2008, chapter 5), which keeps the expressions small.
+Seen from what j moves, a change of q_j only moves j's parent p: by psi1_j = V_p x S_j,
+omega_j = W_p x S_j, and in acceleration by psi2_j + psi1_j x V; a change of the speed v_j adds S_j
+to the velocity and 2 psi1_j + S_j x V to the acceleration. Once more for i, which lies on the
+way from the ground to j or is j: with the sums I_c, D_c, F_c, and h_c, e_c, Q_c of
+
+    h = I W,    e = D^T W,    X . Q Y = (X x Y) . h + (W x X) . I Y + (W x Y) . I X
+
+over the bodies moved by j, and S_j x* h_c = g_j,
+
+    d2 phi / dq_i dq_j  = omega_i . r_j + psi2_i . s_j + psi1_i . t_j
+    d2 phi / dq_i dv_j  = omega_i . (2 I_c psi1_j + D_c S_j) + psi1_i . u_j
+    d2 phi / dv_i dq_j  = 2 psi1_i . s_j + S_i . t_j           (i not j)
+    d2 phi / dv_i dv_j  = S_i . u_j
+    d2 phi / dq_i da_j  = omega_i . I_c S_j
+    d2 phi / da_i dq_j  = S_i . s_j                            (i not j)
+
+    r_j = S_j x* F_c + I_c psi2_j + D_c psi1_j,     s_j = I_c omega_j + g_j
+    t_j = D_c^T omega_j + V_p x* g_j + psi1_j x* h_c + S_j x* (e_c - V_p x* h_c) + Q_c^T psi1_j
+    u_j = 2 g_j + Q_c^T S_j
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
-import casadi
 import numpy as np
 
 from drakegait.walker import feet
-from drakegait.walker.skeleton import GRAVITY, Skeleton
+from drakegait.walker.dynamics_derivatives import (
+    Motion,
+    Tree,
+    cross_motion,
+    cross_onto,
+    spatial_inertias,
+)
+from drakegait.walker.skeleton import Skeleton
+
+# Entries that are zero at any posture come out as rounding errors of this share of the block's
+# largest entry or less; others of our walkers are above 1e-4 of it.
+_NOTHING = 1e-11
 
 
 @dataclass(frozen=True)
@@ -58,8 +82,8 @@ class DynamicsCurvature:
     """Curvature of `w.(M a + k - g - C^T lambda) + nu.C e + rho.positions` at many instants."""
 
     def __init__(self, skeleton: Skeleton):
-        self._function, self._places = _build(skeleton)
-        self._mapped: dict[int, casadi.Function] = {}
+        self._skeleton = skeleton
+        self._zero = self._never_other_than_zero()
 
     def evaluate(
         self,
@@ -71,186 +95,128 @@ class DynamicsCurvature:
         weights: Weights,
     ) -> MotionCurvature:
         """Blocks of second derivatives at instants (num, ...)."""
-        parts = [q, v, a, multipliers, residuals, *vars(weights).values()]
-        values = self._call(np.concatenate(parts, axis=1))
-        blocks = {}
-        for name, (start, rows, columns, shape) in self._places.items():
-            block = np.zeros((len(q), *shape))
-            block[:, rows, columns] = values[:, start : start + len(rows)]
-            blocks[name] = block
-        return MotionCurvature(**blocks)
+        blocks = self._evaluate(q, v, a, multipliers, residuals, weights)
+        for name, zero in self._zero.items():
+            getattr(blocks, name)[:, zero] = 0.0
+        return blocks
 
-    def _call(self, inputs: np.ndarray) -> np.ndarray:
-        """The compiled function at all instants, shared out to two threads."""
-        num = len(inputs)
-        if num not in self._mapped:
-            self._mapped[num] = self._function.map(num, "thread", min(2, num))
-        out = np.empty((num, self._function.nnz_out(0)))
-        buffer, run = self._mapped[num].buffer()
-        inputs = np.ascontiguousarray(inputs)
-        buffer.set_arg(0, memoryview(inputs))
-        buffer.set_res(0, memoryview(out))
-        run()
-        return out
+    def _evaluate(
+        self,
+        q: np.ndarray,
+        v: np.ndarray,
+        a: np.ndarray,
+        multipliers: np.ndarray,
+        residuals: np.ndarray,
+        weights: Weights,
+    ) -> MotionCurvature:
+        motion, geometry = self._skeleton.motion(q), self._skeleton.feet_geometry
+        w, nu = weights.motion, weights.velocities
+        qq, qv, vv, qa = inverse_dynamics_curvature(self._skeleton.tree, motion, v, a, w)
+        qq -= geometry.power_curvature(motion, w, multipliers)
+        qq += geometry.power_curvature(motion, residuals, nu)
+        qq += geometry.position_curvature(motion, weights.positions)
+        ql = -np.swapaxes(geometry.velocity_derivative(motion, w), 1, 2)
+        return MotionCurvature(
+            qq, qv, vv, qa, ql, np.swapaxes(geometry.force_derivative(motion, nu), 1, 2)
+        )
 
+    def _never_other_than_zero(self) -> dict[str, np.ndarray]:
+        """Masks of the entries of each block that are zero whatever the motion."""
+        n, random = self._skeleton.num_coordinates, np.random.default_rng(0)
+        rows = feet.NUM_ROWS_WITH_TORQUES if self._skeleton.toe_torque else feet.NUM_ROWS
+        num = 3
 
-def _build(skeleton: Skeleton) -> tuple[casadi.Function, dict[str, tuple]]:
-    n = skeleton.num_coordinates
-    q, v, a, w, e = (casadi.SX.sym(name, n) for name in "qvawe")
-    num = feet.NUM_ROWS_WITH_TORQUES if skeleton.toe_torque else feet.NUM_ROWS
-    multipliers, nu = (casadi.SX.sym(name, num) for name in ("l", "nu"))
-    rho = casadi.SX.sym("rho", feet.NUM_ROWS)
-    links = _links(skeleton, q, v, a, (w, e))
-    total = _virtual_power(skeleton, links)
-    for foot, side in enumerate("rl"):
-        rows = slice(feet.ROWS_PER_FOOT * foot, feet.ROWS_PER_FOOT * (foot + 1))
-        link = links[f"foot_{side}"]
-        points = [
-            skeleton.plant.GetFrameByName(f"{name}_{side}").GetFixedPoseInBodyFrame().translation()
-            for name in ("heel", "toe")
-        ]
-        total += casadi.dot(_row_velocities(link, points, 0), -multipliers[rows])
-        total += casadi.dot(_row_velocities(link, points, 1), nu[rows])
-        total += casadi.dot(_row_positions(link, points), rho[rows])
-        if skeleton.toe_torque:
-            rows = slice(feet.ROLL_ROWS[foot], feet.PITCH_ROWS[foot] + 1)
-            total += casadi.dot(_tilt_velocities(link, 0), -multipliers[rows])
-            total += casadi.dot(_tilt_velocities(link, 1), nu[rows])
-    by_q = casadi.gradient(total, q)
-    blocks = {
-        "qq": casadi.jacobian(by_q, q),
-        "qv": casadi.jacobian(by_q, v),
-        "vv": casadi.jacobian(casadi.gradient(total, v), v),
-        "qa": casadi.jacobian(by_q, a),
-        "ql": casadi.jacobian(by_q, multipliers),
-        "qe": casadi.jacobian(by_q, e),
-    }
-    places, parts, start = {}, [], 0
-    for name, block in blocks.items():
-        rows_, columns = block.sparsity().get_triplet()
-        places[name] = (start, np.array(rows_, int), np.array(columns, int), block.shape)
-        parts.append(casadi.vertcat(*block.nonzeros()))
-        start += block.nnz()
-    inputs = casadi.vertcat(q, v, a, multipliers, e, w, nu, rho)
-    return casadi.Function("curvature", [inputs], [casadi.vertcat(*parts)]), places
+        def some(size: int) -> np.ndarray:
+            return random.uniform(0.5, 1.5, (num, size)) * random.choice([-1.0, 1.0], (num, size))
+
+        weights = Weights(some(n), some(rows), some(feet.NUM_ROWS))
+        blocks = self._evaluate(some(n), some(n), some(n), some(rows), some(n), weights)
+        found = {}
+        for field in fields(blocks):
+            size = np.abs(getattr(blocks, field.name)).max(axis=0)
+            found[field.name] = size <= _NOTHING * size.max()
+        return found
 
 
-@dataclass
-class _Link:
-    """Motion of a link's origin in the link's own axes, and its pose in the world."""
+def inverse_dynamics_curvature(
+    tree: Tree, motion: Motion, v: np.ndarray, a: np.ndarray, w: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Second derivatives of w . (M a + bias - gravity forces), w held constant.
 
-    rotation: casadi.SX
-    origin: casadi.SX
-    omega: casadi.SX
-    alpha: casadi.SX
-    acceleration: casadi.SX
-    virtual: list[tuple[casadi.SX, casadi.SX]]  # angular, linear velocity at w and at e
+    Args:
+        v, a, w: (num, n) velocities, accelerations and weights of the coordinates.
 
+    Returns:
+        by q and q, by q and v, by v and v, by q and a, (num, n, n) each.
+    """
+    twists, inward, moves = motion.twists, tree.strictly_inner.T, tree.moves
+    steps, weighted = twists * v[..., None], twists * w[..., None]
+    ground = np.array([0.0, 0.0, 0.0, 0.0, 0.0, tree.gravity])
+    parent_cross = cross_motion(inward @ steps)
+    psi1 = _times(parent_cross, twists)
+    accelerations = twists * a[..., None] + psi1 * v[..., None]
+    psi2 = _times(cross_motion(inward @ accelerations + ground), twists)
+    psi2 += _times(parent_cross, psi1)
+    omega = _times(cross_motion(inward @ weighted), twists)
 
-def _links(
-    skeleton: Skeleton, q: casadi.SX, v: casadi.SX, a: casadi.SX, rates: tuple[casadi.SX, ...]
-) -> dict[str, _Link]:
-    """Every link by its name."""
-    plant = skeleton.plant
-    joints = {name: plant.GetJointByName(name) for name in skeleton.coordinates}
-    inboard = {joint.child_body().name(): name for name, joint in joints.items()}
-    zero = casadi.SX.zeros(3)
-    lift = casadi.SX([0.0, 0.0, GRAVITY])
-    ground = _Link(casadi.SX.eye(3), zero, zero, zero, lift, [(zero, zero) for _ in rates])
-    links: dict[str, _Link] = {}
-
-    def link(body: str) -> _Link:
-        if body not in inboard:
-            return ground
-        if body not in links:
-            name = inboard[body]
-            joint, index = joints[name], skeleton.coordinates.index(name)
-            parent = link(joint.parent_body().name())
-            own = (q[index], v[index], a[index], [rate[index] for rate in rates])
-            links[body] = _step(parent, joint, *own)
-        return links[body]
-
-    for body in inboard:
-        link(body)
-    return links
-
-
-def _step(parent: _Link, joint, q, v, a, rates: list) -> _Link:  # noqa: ANN001 - Drake, CasADi
-    """The link beyond a joint with one axis, whose frames have the links' directions."""
-    offset = joint.frame_on_parent().GetFixedPoseInBodyFrame()
-    on_child = joint.frame_on_child().GetFixedPoseInBodyFrame()
-    assert offset.rotation().IsNearlyIdentity() and on_child.IsNearlyIdentity(1e-12)
-    arm = casadi.SX(offset.translation())
-    turns = joint.type_name() == "revolute"
-    axis = joint.revolute_axis() if turns else joint.translation_axis()
-    slide, slide_rate, slide_acceleration = (
-        (0.0, 0.0, 0.0) if turns else (axis * q, axis * v, axis * a)
+    inertia = spatial_inertias(tree, motion)
+    velocity = moves.T @ steps
+    cross, turning = cross_motion(velocity), cross_motion(moves.T @ weighted)
+    gained = inertia @ np.stack(
+        [velocity, moves.T @ accelerations + ground, moves.T @ weighted], axis=-1
     )
-    arm = casadi.sparsify(arm + slide)
-    down = _turn(axis, q).T if turns else casadi.SX.eye(3)
-    omega, alpha = parent.omega, parent.alpha
-    velocity_of_arm = casadi.cross(omega, arm)
-    acceleration = parent.acceleration + casadi.cross(alpha, arm)
-    acceleration += casadi.cross(omega, velocity_of_arm + 2.0 * slide_rate) + slide_acceleration
-    virtual = []
-    for (angular, linear), rate in zip(parent.virtual, rates, strict=True):
-        moved = linear + casadi.cross(angular, arm) + (0.0 if turns else axis * rate)
-        virtual.append((down @ angular + (axis * rate if turns else 0.0), down @ moved))
-    carried = down @ omega
-    spin = axis * v if turns else casadi.SX.zeros(3)
-    return _Link(
-        parent.rotation @ down.T,
-        parent.origin + parent.rotation @ arm,
-        carried + spin,
-        down @ alpha + (axis * a if turns else 0.0) + casadi.cross(carried, spin),
-        down @ acceleration,
-        virtual,
-    )
+    momentum, virtual_momentum = gained[..., 0], gained[..., 2]
+    carried, turned = inertia @ cross, inertia @ turning
+    gyration = cross_onto(momentum) - carried - _transposed(cross) @ inertia
+    force = gained[..., 1] - _times(_transposed(cross), momentum)
+    pairing = turned + _transposed(turned) - _transposed(cross_onto(virtual_momentum))
+    virtual = _times(_transposed(gyration), moves.T @ weighted)
+
+    lead, bodies = inertia.shape[:-3], inertia.shape[-3]
+    matrices = np.concatenate(
+        [inertia, _transposed(gyration), _transposed(pairing)], axis=-1
+    ).reshape(*lead, bodies, 108)
+    matrices = (moves @ matrices).reshape(*lead, -1, 6, 18)
+    inertia, backward, pairing = (matrices[..., 6 * k : 6 * k + 6] for k in range(3))
+    vectors = moves @ np.concatenate([force, virtual_momentum, virtual], axis=-1)
+    force, virtual_momentum, virtual = (vectors[..., 6 * k : 6 * k + 6] for k in range(3))
+
+    by_inertia = inertia @ np.stack([twists, psi1, psi2, omega], axis=-1)
+    gyrated = _transposed(backward) @ np.stack([twists, psi1], axis=-1)
+    paired = pairing @ np.stack([twists, psi1], axis=-1)
+    onto = cross_onto(virtual_momentum) @ np.stack([twists, psi1], axis=-1)
+    g = onto[..., 0]
+    back = _times(-_transposed(parent_cross), g)
+    virtual = virtual + _times(_transposed(parent_cross), virtual_momentum)
+    r = _times(cross_onto(force), twists) + by_inertia[..., 2] + gyrated[..., 1]
+    s = by_inertia[..., 3] + g
+    t = _times(backward, omega) + back + onto[..., 1] + paired[..., 1]
+    t += _times(cross_onto(virtual), twists)
+    u = 2.0 * g + paired[..., 0]
+    x = 2.0 * by_inertia[..., 1] + gyrated[..., 0]
+
+    outer, strict = tree.inner, tree.strictly_inner
+    qq = outer * (_pairs(omega, r) + _pairs(psi2, s) + _pairs(psi1, t))
+    qv = outer * (_pairs(omega, x) + _pairs(psi1, u))
+    qv += _transposed(strict * (2.0 * _pairs(psi1, s) + _pairs(twists, t)))
+    vv = outer * _pairs(twists, u)
+    qa = outer * _pairs(omega, by_inertia[..., 0]) + _transposed(strict * _pairs(twists, s))
+    return mirrored(qq, strict), qv, mirrored(vv, strict), qa
 
 
-def _turn(axis: np.ndarray, angle: casadi.SX) -> casadi.SX:
-    """Rotation about a unit axis (Rodrigues)."""
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    turn = np.outer(axis, axis) + casadi.cos(angle) * (-cross @ cross) + casadi.sin(angle) * cross
-    return casadi.sparsify(casadi.SX(turn))
+def mirrored(pairs: np.ndarray, strict: np.ndarray) -> np.ndarray:
+    """Symmetric matrices from what holds where the row lies inwards of the column."""
+    return pairs + _transposed(strict * pairs)
 
 
-def _virtual_power(skeleton: Skeleton, links: dict[str, _Link]) -> casadi.SX:
-    total = casadi.SX(0.0)
-    for name, link in links.items():
-        body = skeleton.plant.GetBodyByName(name)
-        mass = body.default_mass()
-        if mass == 0.0:
-            continue
-        inertia = body.default_spatial_inertia()
-        com = inertia.get_com()
-        about_com = inertia.Shift(com).CalcRotationalInertia().CopyToFullMatrix3()
-        about_com = casadi.sparsify(casadi.SX(np.where(np.abs(about_com) < 1e-12, 0, about_com)))
-        arm = casadi.sparsify(casadi.SX(com))
-        omega, alpha = link.omega, link.alpha
-        acceleration = link.acceleration + casadi.cross(alpha, arm)
-        acceleration += casadi.cross(omega, casadi.cross(omega, arm))
-        angular, linear = link.virtual[0]
-        total += mass * casadi.dot(acceleration, linear + casadi.cross(angular, arm))
-        torque = about_com @ alpha + casadi.cross(omega, about_com @ omega)
-        total += casadi.dot(torque, angular)
-    return total
+def _pairs(rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Products of all rows with all columns (..., n, 6) -> (..., n, n)."""
+    return rows @ _transposed(columns)
 
 
-def _row_velocities(link: _Link, points: list[np.ndarray], which: int) -> casadi.SX:
-    """Contact rows of C(q) times the virtual velocities number `which` (7,)."""
-    angular, linear = link.virtual[which]
-    velocities = [link.rotation @ (linear + casadi.cross(angular, point)) for point in points]
-    return casadi.vertcat(*velocities, (link.rotation @ angular)[2])
+def _times(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    return (matrices @ vectors[..., None])[..., 0]
 
 
-def _tilt_velocities(link: _Link, which: int) -> casadi.SX:
-    """Rotations about x and y at the virtual velocities number `which` (2,)."""
-    return (link.rotation @ link.virtual[which][0])[:2]
-
-
-def _row_positions(link: _Link, points: list[np.ndarray]) -> casadi.SX:
-    """Positions of heel and toe and the heading of the foot (7,)."""
-    heel, toe = (link.origin + link.rotation @ point for point in points)
-    along = toe - heel
-    return casadi.vertcat(heel, toe, casadi.atan2(along[1], along[0]))
+def _transposed(x: np.ndarray) -> np.ndarray:
+    return np.swapaxes(x, -1, -2)

@@ -70,12 +70,12 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     )
 
 
-def _cross_motion(x: np.ndarray) -> np.ndarray:
+def cross_motion(x: np.ndarray) -> np.ndarray:
     """Matrix of Y -> X x Y; that of F -> X x* F is minus its transpose."""
     return (x @ _MOTION).reshape(*x.shape[:-1], 6, 6)
 
 
-def _cross_onto(force: np.ndarray) -> np.ndarray:
+def cross_onto(force: np.ndarray) -> np.ndarray:
     """Matrix of X -> X x* F for a given F."""
     return (force @ _FORCE).reshape(*force.shape[:-1], 6, 6)
 
@@ -158,21 +158,21 @@ def inverse_dynamics_derivatives(
 
     steps = twists * v[..., None]
     parent_velocity = inward @ steps
-    parent_cross = _cross_motion(parent_velocity)
+    parent_cross = cross_motion(parent_velocity)
     psi1 = _apply(parent_cross, twists)
     accelerations = twists * a[..., None] + psi1 * v[..., None]
     ground = np.array([0.0, 0.0, 0.0, 0.0, 0.0, tree.gravity])
     parent_acceleration = inward @ accelerations + ground
-    psi2 = _apply(_cross_motion(parent_acceleration), twists) + _apply(parent_cross, psi1)
+    psi2 = _apply(cross_motion(parent_acceleration), twists) + _apply(parent_cross, psi1)
 
     velocity = tree.moves.T @ steps
     acceleration = tree.moves.T @ accelerations + ground
     inertia = spatial_inertias(tree, motion)
     momentum = _apply(inertia, velocity)
-    cross = _cross_motion(velocity)
+    cross = cross_motion(velocity)
     dual = -np.swapaxes(cross, -1, -2)
     force = _apply(inertia, acceleration) + _apply(dual, momentum)
-    gyration = dual @ inertia - inertia @ cross + _cross_onto(momentum)
+    gyration = dual @ inertia - inertia @ cross + cross_onto(momentum)
 
     bodies = inertia.shape[-3]
     inertia = (tree.moves @ inertia.reshape(*lead, bodies, 36)).reshape(*lead, -1, 6, 6)
@@ -184,7 +184,7 @@ def inverse_dynamics_derivatives(
     outer_inertia = _apply(inertia, twists)
     outer_gyration = (twists[..., None, :] @ gyration)[..., 0, :]
     columns_q = _apply(inertia, psi2) + _apply(gyration, psi1)
-    columns_q += _apply(_cross_onto(force), twists)
+    columns_q += _apply(cross_onto(force), twists)
     columns_v = 2.0 * _apply(inertia, psi1) + _apply(gyration, twists)
 
     def transposed(x: np.ndarray) -> np.ndarray:

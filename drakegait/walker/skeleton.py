@@ -48,6 +48,7 @@ class Skeleton:
         num_coordinates: how many.
         sdf: the text it was made from.
         plant: Drake's plant in double precision. Its own order of the coordinates may differ.
+        tree, feet_geometry: what does not change with the posture.
         total_mass: of the body with all that is fixed to it [kg].
 
     Raises:
@@ -70,9 +71,9 @@ class Skeleton:
         except RuntimeError as error:
             raise BadFile(OWN_MODEL, f"Drake cannot read the model: {error}") from None
         self._order = check_joints(self.plant, self.coordinates)
-        self._tree = read_tree(self.plant, self.coordinates, GRAVITY)
-        self._feet = self._read_feet()
-        self.total_mass = float(self._tree.masses.sum())
+        self.tree = read_tree(self.plant, self.coordinates, GRAVITY)
+        self.feet_geometry = self._read_feet()
+        self.total_mass = float(self.tree.masses.sum())
         self._double = self._open(self.plant, float)
         self._autodiff: PlantDoor | None = None
         self._last: tuple[np.ndarray, Motion] | None = None
@@ -150,17 +151,17 @@ class Skeleton:
 
         One call for all instants of a gait is many times cheaper than one call each.
         """
-        motion = self._motion(q)
-        r, dr_dq, dr_dv, mass = inverse_dynamics_derivatives(self._tree, motion, v, a)
-        jacobian = self._feet.jacobian(motion)
+        motion = self.motion(q)
+        r, dr_dq, dr_dv, mass = inverse_dynamics_derivatives(self.tree, motion, v, a)
+        jacobian = self.feet_geometry.jacobian(motion)
         r = r - (np.asarray(multipliers)[..., None, :] @ jacobian)[..., 0, :]
-        return r, dr_dq - self._feet.force_derivative(motion, multipliers), dr_dv, mass
+        return r, dr_dq - self.feet_geometry.force_derivative(motion, multipliers), dr_dv, mass
 
     # Kinematics.
 
     def contact_points(self, q: np.ndarray) -> np.ndarray:
         """World positions (..., 4, 3) of heel_r, toe_r, heel_l, toe_l [m]."""
-        points = self._feet.contact_points(self._motion(q))
+        points = self.feet_geometry.contact_points(self.motion(q))
         return points.reshape(*points.shape[:-3], 4, 3)
 
     def contact_jacobian(self, q: np.ndarray) -> np.ndarray:
@@ -168,11 +169,11 @@ class Skeleton:
 
         The yaw row is e_z . angular velocity: its multiplier is a purely vertical moment.
         """
-        return self._feet.jacobian(self._motion(q))
+        return self.feet_geometry.jacobian(self.motion(q))
 
     def contact_velocity_derivative(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
         """Derivative (..., 14, n) of C(q) w with respect to q, w (..., n) held constant."""
-        return self._feet.velocity_derivative(self._motion(q), np.asarray(w))
+        return self.feet_geometry.velocity_derivative(self.motion(q), np.asarray(w))
 
     def foot_yaw(self, q: np.ndarray) -> np.ndarray:
         """Heading (..., 2) of both feet: atan2(d_y, d_x), d from heel to toe [rad].
@@ -185,32 +186,32 @@ class Skeleton:
 
     def foot_yaw_gradient(self, q: np.ndarray) -> np.ndarray:
         """Derivative (..., 2, n) of `foot_yaw`; not the yaw rows of C where a foot is tilted."""
-        motion = self._motion(q)
-        points = self._feet.contact_points(motion)
+        motion = self.motion(q)
+        points = self.feet_geometry.contact_points(motion)
         along = points[..., 1, :] - points[..., 0, :]
         x, y = along[..., 0, None], along[..., 1, None]
-        rows = self._feet.jacobian(motion)
+        rows = self.feet_geometry.jacobian(motion)
         rows = rows[..., :14, :].reshape(*rows.shape[:-2], 2, 7, rows.shape[-1])[..., :6, :]
         change = rows[..., 3:, :] - rows[..., :3, :]
         return (x * change[..., 1, :] - y * change[..., 0, :]) / (x * x + y * y)
 
     def body_poses(self, q: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         """Rotation (..., 3, 3) to world axes and origin (..., 3) [m] of each segment, by name."""
-        motion = self._motion(q)
+        motion = self.motion(q)
         return {
             name: (motion.rotations[..., i, :, :], motion.origins[..., i, :])
-            for i, name in enumerate(self._tree.names)
+            for i, name in enumerate(self.tree.names)
         }
 
     def center_of_mass(self, q: np.ndarray) -> np.ndarray:
         """Centre of mass (..., 3) of the whole walker in the world [m]."""
-        motion = self._motion(q)
-        places = motion.origins + (motion.rotations @ self._tree.coms[..., None])[..., 0]
-        return (self._tree.masses / self.total_mass) @ places
+        motion = self.motion(q)
+        places = motion.origins + (motion.rotations @ self.tree.coms[..., None])[..., 0]
+        return (self.tree.masses / self.total_mass) @ places
 
     def center_of_mass_jacobian(self, q: np.ndarray) -> np.ndarray:
         """Velocity (..., 3, n) of the centre of mass per unit speed of each coordinate."""
-        motion, tree = self._motion(q), self._tree
+        motion, tree = self.motion(q), self.tree
         places = motion.origins + (motion.rotations @ tree.coms[..., None])[..., 0]
         shares = tree.moves * (tree.masses / self.total_mass)  # (n, bodies)
         axes, at_origin = motion.twists[..., :3], motion.twists[..., 3:]
@@ -220,7 +221,7 @@ class Skeleton:
     # The door to Drake.
 
     def _read_feet(self) -> FeetGeometry:
-        tree = self._tree
+        tree = self.tree
         feet = np.array([tree.names.index(name) for name in ("foot_r", "foot_l")])
         points = []
         for name in CONTACT_FRAMES:
@@ -236,7 +237,7 @@ class Skeleton:
         return FeetGeometry(tree.inner, moves, feet, heels_and_toes, self.toe_torque)
 
     def _open(self, plant: MultibodyPlant_, scalar: type) -> PlantDoor:
-        bodies, moves_right = self._tree.names, self._feet.moves[0] > 0
+        bodies, moves_right = self.tree.names, self.feet_geometry.moves[0] > 0
         return PlantDoor(plant, scalar, self._order, bodies, moves_right)
 
     def _door(self, q: np.ndarray) -> PlantDoor:
@@ -259,7 +260,8 @@ class Skeleton:
         results = np.array([function(door, *row) for row in zip(*flat, strict=True)])
         return results.reshape(*lead, *results.shape[1:])
 
-    def _motion(self, q: np.ndarray) -> Motion:
+    def motion(self, q: np.ndarray) -> Motion:
+        """Poses of the bodies and twists of the coordinates."""
         q = np.asarray(q)
         if q.dtype == object:
             return self._door(q).motion(q)
