@@ -38,10 +38,9 @@ def add_energy_weights(
     first, second = _power_weight_derivatives(state, objective)
     slopes = state.muscles[1][:, :, 2]
     blocks.late += cost.power(state)[:, None, None] * second
-    by_length = -np.einsum("mi,pma->pia", spans.arms, slopes[:, :, 3:])
-    force, motion = slopes[:, :, :3] @ blocks.b, by_length @ blocks.b
-    blocks.late_f += first[:, :, None, None] * force[:, None]
-    blocks.late_c += first[:, :, None, None] * motion[:, None]
+    by_length = -spans.arms.T @ slopes[:, :, 3:]
+    blocks.late_force[..., :3] += first[:, :, None, None] * slopes[:, None, :, :3]
+    blocks.late_motion[..., :3] += first[:, :, None, None] * by_length[:, None]
     along = np.einsum("pma,pdma->pd", slopes[:, :, :3], directions.force)
     along += np.einsum("pia,pdia->pd", by_length, directions.motion)
     late = np.einsum("pd,pdl->pl", along, directions.by_late)
@@ -79,14 +78,13 @@ def add_deviation(blocks: HessianBlocks, cost: Deviation, objective: float) -> N
     slope, force_slope = cost.differences(state, order=1)
     slope = slope + state.motion.by_tau[0]
     wq, wf = cost.coordinate_weight, cost.force_weight
-    b0, b1 = state.basis[0], state.basis[1]
     diagonal = np.arange(motion.shape[1])
     bend = 2.0 * factor[:, None] * wq
-    outer = b0[:, :, None] * b0[:, None]
-    blocks.cc[:, diagonal, :, diagonal] += bend.T[:, :, None, None] * outer
-    mixed = slope[:, :, None] * b0[:, None] + motion[:, :, None] * b1[:, None]
-    time = blocks.tau_by_time
-    blocks.late_c[:, :NUM_TIME] += time[:, :, None, None] * (bend[:, :, None] * mixed)[:, None]
+    blocks.motion[:, diagonal, 0, diagonal, 0] += bend
+    time, by_time = blocks.tau_by_time, blocks.late_motion[:, :NUM_TIME]
+    by_time[..., 0] += time[:, :, None] * (bend * slope)[:, None]
+    # The rows of order 1 are over T, those of the slope by tau are not.
+    by_time[..., 1] += time[:, :, None] * (bend * motion * period[:, None])[:, None]
     motion_bend = state.bending(blocks.b_tau_tau)[0][:, :, 0]
     motion_bend = motion_bend - reference.coordinate_values(state.tau, derivative=2)
     force_bend = -reference.ground_reactions(state.tau, derivative=2)
@@ -104,8 +102,7 @@ def add_deviation(blocks: HessianBlocks, cost: Deviation, objective: float) -> N
     second = np.zeros((len(first), NUM_TIME, NUM_TIME))
     second[:, 0, 1:] = second[:, 1:, 0] = rate * weights
     late += cost.rate(state)[:, None, None] * second
-    by_c = 2.0 * (motion * wq)[:, :, None] * b0[:, None]
-    blocks.late_c[:, :NUM_TIME] += first[:, :, None, None] * by_c[:, None]
+    by_time[..., 0] += first[:, :, None] * (2.0 * motion * wq)[:, None]
     blocks.multiplier_time += _on_points(state, 2.0 * wf * force)[:, :, None] * first[:, None]
     by_tau = 2.0 * ((motion * slope) @ wq + _reactions(force * force_slope, wf))
     late += _both_ways(first, by_tau[:, None] * time)

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drakegait.program.excitation import MuscleChain
 from drakegait.program.hessian_blocks import NUM_LATE, HessianBlocks
 from drakegait.program.local_state import LocalState
 from drakegait.program.physical_hessian import PhysicalHessian
@@ -67,24 +66,14 @@ class Directions:
 
 
 def carry(
-    blocks: HessianBlocks, physical: PhysicalHessian, directions: Directions, spans: MuscleChain
+    blocks: HessianBlocks, physical: PhysicalHessian, directions: Directions, arms: np.ndarray
 ) -> None:
     """Add the local second derivatives of `physical` to `blocks`."""
-    _coefficients(blocks, physical, spans)
-    _late(blocks, physical, directions, spans.arms)
+    blocks.motion += physical.motion
+    blocks.force += physical.force
+    blocks.cross += physical.cross
+    _late(blocks, physical, directions, arms)
     _posture(blocks, physical, directions)
-
-
-def _coefficients(blocks: HessianBlocks, physical: PhysicalHessian, spans: MuscleChain) -> None:
-    """Between spline coefficients."""
-    b = blocks.b
-    num, n, _, _, _ = physical.motion.shape
-    bt = np.swapaxes(b, 1, 2)[:, None]
-    inner = (physical.motion.reshape(num, n * 3 * n, 3) @ b).reshape(num, n, 3, -1)
-    blocks.cc += (bt @ inner).reshape(blocks.cc.shape)
-    blocks.ff += bt @ physical.force @ b[:, None]
-    block = bt @ physical.cross @ b[:, None]  # by force and length
-    blocks.fc = -spans.arm_of_span[:, None, None] * block[:, spans.muscle_of_span]
 
 
 def _late(
@@ -92,30 +81,32 @@ def _late(
 ) -> None:
     """With tau, T and L, hence with the late variables."""
     state, motion, force = blocks.state, physical.motion, physical.force
-    num, n = motion.shape[:2]
+    (num, n), m = motion.shape[:2], force.shape[1]
     first, force_first = physical.motion_first, physical.force_first
     period = state.stride_time[:, :, None]
-    dy, df = directions.motion, directions.force
-    lengths = -np.einsum("mi,pdia->pdma", arms, dy)
-    slope = np.einsum("pxy,pdy->pdx", motion.reshape(num, n * 3, n * 3), dy.reshape(num, 3, -1))
-    slope = slope.reshape(dy.shape)
-    crossed = np.einsum("pmab,pdma->pdmb", physical.cross, df)
-    slope -= np.einsum("pdmb,mi->pdib", crossed, arms)
-    slope_f = np.einsum("pmab,pdmb->pdma", force, df)
-    slope_f += np.einsum("pmab,pdmb->pdma", physical.cross, lengths)
-    small = np.einsum("pdia,peia->pde", slope, dy) + np.einsum("pdma,pema->pde", slope_f, df)
-    by_c, by_f = slope @ blocks.b[:, None], slope_f @ blocks.b[:, None]
-    # y itself bends: coefficients with tau and with T ...
-    by_c[:, 0] += first @ blocks.b_tau
-    by_f[:, 0] += force_first @ blocks.b_tau
-    by_c[:, 1] -= (first * _ORDER) @ blocks.b / period
-    by_f[:, 1] -= (force_first * _ORDER) @ blocks.b / period
+    dy, df = directions.motion.reshape(num, 3, -1), directions.force
+    lengths = -arms @ directions.motion
+    slope = (dy @ motion.reshape(num, n * 3, n * 3)).reshape(directions.motion.shape)
+    by_muscle, by_length = (np.swapaxes(part, 1, 2) for part in (df, lengths))  # (num, m, 3, 3)
+    slope -= arms.T @ np.swapaxes(by_muscle @ physical.cross, 1, 2)
+    slope_f = by_muscle @ force + by_length @ np.swapaxes(physical.cross, 2, 3)
+    slope_f = np.swapaxes(slope_f, 1, 2).reshape(num, 3, -1)
+    small = slope.reshape(num, 3, -1) @ np.swapaxes(dy, 1, 2)
+    small += slope_f @ np.swapaxes(df.reshape(num, 3, -1), 1, 2)
+    by_motion, by_force = np.zeros((num, 3, n, 4)), np.zeros((num, 3, m, 4))
+    by_motion[..., :3], by_force[..., :3] = slope, slope_f.reshape(num, 3, m, 3)
+    # y itself bends: coefficients with tau, whose rows are those of the next order times T ...
+    by_motion[:, 0, :, 1:] += first * period
+    by_force[:, 0, :, 1:] += force_first * period
+    # ... and with T ...
+    by_motion[:, 1, :, :3] -= first * (_ORDER / period)
+    by_force[:, 1, :, :3] -= force_first * (_ORDER / period)
     # ... and tau, T, L among themselves.
     small += _own_bending(blocks, physical, directions)
-    late = directions.by_late
-    blocks.late += np.swapaxes(late, 1, 2) @ small @ late
-    blocks.late_c += np.einsum("pdl,pdcw->plcw", late, by_c, optimize=True)
-    blocks.late_f += np.einsum("pdl,pdcw->plcw", late, by_f, optimize=True)
+    late = np.swapaxes(directions.by_late, 1, 2)
+    blocks.late += late @ small @ directions.by_late
+    for block, part in ((blocks.late_motion, by_motion), (blocks.late_force, by_force)):
+        block += (late @ part.reshape(num, 3, -1)).reshape(block.shape)
 
 
 def _own_bending(
@@ -140,18 +131,15 @@ def _own_bending(
     return out
 
 
-def _posture(
-    blocks: HessianBlocks, physical: PhysicalHessian, directions: Directions
-) -> None:
+def _posture(blocks: HessianBlocks, physical: PhysicalHessian, directions: Directions) -> None:
     """Multipliers and residuals, which meet the motion through the posture only."""
-    b0, by_tau = blocks.b[:, 0], directions.motion[:, 0, :, 0]
-    for rows, by_c, by_time in (
-        (physical.multipliers, blocks.multiplier_c, blocks.multiplier_time),
-        (physical.residuals, blocks.residual_c, blocks.residual_time),
+    by_tau = directions.motion[:, 0, :, 0, None]
+    for rows, by_motion, by_time in (
+        (physical.multipliers, blocks.multiplier_motion, blocks.multiplier_time),
+        (physical.residuals, blocks.residual_motion, blocks.residual_time),
     ):
-        by_c += rows[:, :, :, None] * b0[:, None, None, :]
-        along = np.einsum("prj,pj->pr", rows, by_tau)
-        by_time += along[:, :, None] * blocks.tau_by_time[:, None]
+        by_motion += rows
+        by_time += (rows @ by_tau) * blocks.tau_by_time[:, None]
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:

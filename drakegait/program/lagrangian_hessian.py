@@ -102,7 +102,7 @@ class LagrangianHessian:
 
     def _local(self, curvature: LocalCurvature, objective: float) -> np.ndarray:
         """Second derivatives by local variables (num, entries)."""
-        state, entries = curvature.blocks.state, curvature.blocks.values()
+        state, entries = curvature.blocks.state, curvature.blocks.values(self._spans)
         if not self._penalties:
             return entries
         penalties = [penalty.curvature(state, objective) for penalty in self._penalties]
@@ -128,7 +128,7 @@ class LagrangianHessian:
                 blocks, costs[MetabolicCost], directions, self._spans, objective
             )
         physical = physical_hessian(state, self._dynamics, weights, power, springs)
-        carry(blocks, physical, directions, self._spans)
+        carry(blocks, physical, directions, self._spans.arms)
         if Deviation in costs:
             add_deviation(blocks, costs[Deviation], objective)
         add_friction(blocks, weights)
