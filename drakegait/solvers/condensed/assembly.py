@@ -1,7 +1,8 @@
 """From dense blocks at control points to one dense matrix in the shared unknowns.
 
-Control points whose windows begin at the same knot are added up by one matrix product
-before they are put into place.
+Control points whose windows begin at the same knot are added up by one matrix product.
+Two coefficients meet only within a window, so blocks of all pairs of functions are kept by
+knot and distance before they are put into place.
 """
 
 from __future__ import annotations
@@ -9,11 +10,13 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse
 
+from drakegait.program.excitation import MuscleChain
 from drakegait.program.gait_program import GaitProgram
+from drakegait.program.hessian_blocks import HessianBlocks
 
 
 class Assembly:
-    """Adds blocks in motion, forces and late variables (num, shared, shared) to a matrix.
+    """Makes a matrix from blocks in motion, forces and late variables (num, shared, shared).
 
     Args:
         program: whose coefficients, timing and placement are the unknowns.
@@ -24,14 +27,22 @@ class Assembly:
         points, splines = program.points, program.formulation.splines
         layout = points.layout
         self._n, self._m, self._width = layout.num_coordinates, layout.num_muscles, layout.width
-        self._intervals = splines.num_intervals
+        self._intervals, self._size = splines.num_intervals, size
         self._functions = self._n + self._m
+        self._spans = MuscleChain(program.formulation, points)
+        low, high = np.triu_indices(self._width)  # the earlier and the later coefficient
+        self._forward = low * self._width + high
+        self._backward = high * self._width + low
         first = points.first % self._intervals
-        self._groups = [
-            (np.flatnonzero(first == k), (k + np.arange(self._width)) % self._intervals)
-            for k in np.unique(first)
-        ]
-        self._spread = self._coefficients(program, size)
+        self._groups = []
+        for k in np.unique(first):
+            place = (k + low) % self._intervals * self._width + high - low
+            window = (k + np.arange(self._width)) % self._intervals
+            self._groups.append((np.flatnonzero(first == k), window, place))
+        parts = [program.design.selection(name) for name in ("coordinates", "forces")]
+        index = np.concatenate([part.index for part in parts]).T
+        factor = np.concatenate([part.factor for part in parts]).T
+        self._locate(np.ascontiguousarray(index), np.ascontiguousarray(factor))
         # The few unknowns of timing and placement, and how each point's late variables are made
         # of them.
         late = slice(layout.time, layout.multipliers)
@@ -41,59 +52,94 @@ class Assembly:
         point, position = np.nonzero(index >= 0)
         column = np.searchsorted(self._late, index[point, position])
         self._late_map[point, position, column] = factor[point, position]
-        self._size = size
 
-    def _coefficients(self, program: GaitProgram, size: int) -> scipy.sparse.csr_array:
-        """Full coefficients, knot by knot, from the unknowns."""
-        parts = [program.design.selection(name) for name in ("coordinates", "forces")]
-        index = np.concatenate([part.index for part in parts])
-        factor = np.concatenate([part.factor for part in parts])
-        rows = np.arange(index.size).reshape(self._intervals, self._functions).T
-        used = index >= 0
-        return scipy.sparse.csr_array(
-            (factor[used], (rows[used], index[used])), shape=(index.size, size)
-        )
+    def _locate(self, index: np.ndarray, factor: np.ndarray) -> None:
+        """Where pairs of full coefficients (intervals, functions) go in the matrix."""
+        later = (np.arange(self._intervals)[:, None] + np.arange(self._width)) % self._intervals
+        rows, columns = index[:, None, :, None], index[later][:, :, None]
+        used = (rows >= 0) & (columns >= 0)
+        scale = np.where(used, factor[:, None, :, None] * factor[later][:, :, None], 0.0)
+        scale[:, 0] *= 0.5  # the matrix is this and its transpose
+        self._pair_place = np.where(used, rows * self._size + columns, 0).ravel()
+        self._pair_scale = scale.reshape(-1, self._functions, self._functions)
+        used = index.ravel() >= 0
+        entries = factor.ravel()[used], (np.flatnonzero(used), index.ravel()[used])
+        self._spread = scipy.sparse.csr_array(entries, shape=(index.size, self._size))
 
-    def add(self, matrix: np.ndarray, blocks: np.ndarray, basis: np.ndarray) -> None:
-        """Add `blocks` (num, shared, shared), symmetric, to `matrix` (size, size).
+    def matrix(self, dense: np.ndarray, blocks: HessianBlocks) -> np.ndarray:
+        """The sum of all blocks (size, size), symmetric.
 
         Args:
-            basis: weights of the window's coefficients for the orders 0, 1, 2, (num, 3, width).
+            dense: (num, shared, shared), symmetric, by coordinates of the orders 0, 1, 2, forces
+                of order 0 and late variables.
+            blocks: of the Hessian; `force`, `cross`, `late_motion` and `late_force` are added.
         """
-        n, m, width = self._n, self._m, self._width
-        own, num = 3 * n + m, len(blocks)
-        intervals, functions = self._intervals, self._functions
-        full = np.zeros((intervals, intervals, functions, functions))
-        by_late = np.zeros((len(self._late), intervals, functions))
-        # Pairs of basis rows, and the blocks with those rows' orders beside the points.
-        pairs = basis[:, :, None, :, None] * basis[:, None, :, None, :]
-        motion = blocks[:, : 3 * n, : 3 * n].reshape(num, n, 3, n, 3)
-        motion = motion.transpose(0, 2, 4, 1, 3).reshape(num, 9, n * n)
-        cross = blocks[:, : 3 * n, 3 * n : own].reshape(num, n, 3, m)
-        cross = cross.transpose(0, 2, 1, 3).reshape(num, 3, n * m)
-        force = blocks[:, 3 * n : own, 3 * n : own].reshape(num, m * m)
-        late = np.swapaxes(self._late_map, 1, 2) @ blocks[:, own:, :own]
-        with_late = np.empty((num, len(self._late), width, functions))
-        along = late[:, :, : 3 * n].reshape(num, -1, n, 3) @ basis[:, None]
-        with_late[..., :n] = along.transpose(0, 1, 3, 2)
-        with_late[..., n:] = basis[:, None, 0, :, None] * late[:, :, None, 3 * n :]
-        for which, window in self._groups:
-            count = len(which)
-            part = np.empty((width, width, functions, functions))
-            b = pairs[which].transpose(3, 4, 0, 1, 2).reshape(width * width, count, 9)
-            by_motion = b.reshape(width * width, -1) @ motion[which].reshape(count * 9, -1)
-            part[:, :, :n, :n] = by_motion.reshape(width, width, n, n)
-            by_cross = b[:, :, ::3].reshape(width * width, -1) @ cross[which].reshape(count * 3, -1)
-            part[:, :, :n, n:] = by_cross.reshape(width, width, n, m)
-            part[:, :, n:, :n] = part[:, :, :n, n:].transpose(1, 0, 3, 2)
-            part[:, :, n:, n:] = (b[:, :, 0] @ force[which]).reshape(width, width, m, m)
-            full[np.ix_(window, window)] += part
-            by_late[:, window] += with_late[which].sum(axis=0)
-        total, spread = intervals * functions, self._spread
-        square = full.transpose(0, 2, 1, 3).reshape(total, total)
-        matrix += spread.T @ (spread.T @ square).T
-        beside = by_late.reshape(len(self._late), total) @ spread
+        pairs, beside = self._sums(dense, blocks)
+        pairs *= self._pair_scale
+        size = self._size
+        half = np.bincount(self._pair_place, pairs.ravel(), size * size).reshape(size, size)
+        matrix = half + half.T
+        beside = beside @ self._spread
         matrix[self._late] += beside
         matrix[:, self._late] += beside.T
-        corner = np.swapaxes(self._late_map, 1, 2) @ blocks[:, own:, own:] @ self._late_map
+        own = 3 * self._n + self._m
+        corner = np.swapaxes(self._late_map, 1, 2) @ dense[:, own:, own:] @ self._late_map
         matrix[np.ix_(self._late, self._late)] += corner.sum(axis=0)
+        return matrix
+
+    def _sums(self, dense: np.ndarray, blocks: HessianBlocks) -> tuple[np.ndarray, np.ndarray]:
+        """By knot and distance (intervals * width, functions, functions), and with the late
+        unknowns (late, intervals * functions)."""
+        n, m, width, functions = self._n, self._m, self._width, self._functions
+        own, num = 3 * n + m, len(dense)
+        b = blocks.rows[:, :3]
+        # Products of two basis rows, and the blocks with those rows' orders beside the points.
+        products = (b[:, :, None, :, None] * b[:, None, :, None]).reshape(num, 9, width * width)
+        upper = products[:, :, self._forward]
+        motion = dense[:, : 3 * n, : 3 * n].reshape(num, n, 3, n, 3)
+        motion = motion.transpose(0, 2, 4, 1, 3).reshape(num, 9, n * n)
+        force = dense[:, 3 * n : own, 3 * n : own].reshape(num, m * m)
+        own_force = blocks.force.transpose(0, 2, 3, 1).reshape(num, 9, m)
+        meeting = dense[:, : 3 * n, 3 * n : own].reshape(num, n, 3, m)
+        meeting = meeting.transpose(0, 2, 1, 3).reshape(num, 3, n * m)
+        spans = self._spans
+        crossed = blocks.cross[:, spans.muscle_of_span] * -spans.arm_of_span[:, None, None]
+        crossed = crossed.transpose(0, 3, 2, 1).reshape(num, 9, -1)  # orders of length, of force
+        span = spans.coordinate_of_span * m + spans.muscle_of_span
+        late = self._with_late(dense[:, own:, :own], blocks)
+
+        pairs = np.zeros((self._intervals * width, functions, functions))
+        beside = np.zeros((self._intervals, late.shape[2]))
+        part = np.empty((len(self._forward), functions, functions))
+        own_places = n + np.arange(m)
+        for which, window, place in self._groups:
+            count = len(which)
+            whole, half = products[which], upper[which]
+            flat = half.reshape(count * 9, -1).T
+            by_motion = flat @ motion[which].reshape(count * 9, -1)
+            part[:, :n, :n] = by_motion.reshape(-1, n, n)
+            part[:, n:, n:] = (half[:, 0].T @ force[which]).reshape(-1, m, m)
+            part[:, own_places, own_places] += flat @ own_force[which].reshape(count * 9, -1)
+            across = whole[:, ::3].reshape(count * 3, -1).T @ meeting[which].reshape(count * 3, -1)
+            across[:, span] += whole.reshape(count * 9, -1).T @ crossed[which].reshape(
+                count * 9, -1
+            )
+            across = across.reshape(-1, n, m)
+            part[:, :n, n:] = across[self._forward]
+            part[:, n:, :n] = np.swapaxes(across[self._backward], 1, 2)
+            pairs[place] += part
+            rows = blocks.rows[which].reshape(count * 4, width)
+            beside[window] += rows.T @ late[which].reshape(count * 4, -1)
+        beside = beside.reshape(self._intervals, -1, functions).transpose(1, 0, 2)
+        return pairs, beside.reshape(len(self._late), -1)
+
+    def _with_late(self, dense: np.ndarray, blocks: HessianBlocks) -> np.ndarray:
+        """Late unknowns with functions by order (num, 4, late * functions)."""
+        n, num = self._n, len(dense)
+        by_order = np.empty((num, dense.shape[1], 4, self._functions))
+        by_order[..., :n] = np.swapaxes(blocks.late_motion, 2, 3)
+        by_order[..., n:] = np.swapaxes(blocks.late_force, 2, 3)
+        by_order[:, :, :3, :n] += np.swapaxes(dense[..., : 3 * n].reshape(num, -1, n, 3), 2, 3)
+        by_order[:, :, 0, n:] += dense[..., 3 * n :]
+        late = np.swapaxes(self._late_map, 1, 2) @ by_order.reshape(num, dense.shape[1], -1)
+        return late.reshape(num, -1, 4, self._functions).transpose(0, 2, 1, 3).reshape(num, 4, -1)

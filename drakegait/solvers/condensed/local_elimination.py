@@ -72,22 +72,24 @@ class LocalElimination:
         late = np.swapaxes(by_direction, 1, 2) @ directions.by_late
         return cls(contact, inverse, np.concatenate([local, local @ late], axis=2), late)
 
-    def local(self, balance: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def local(self, balance: np.ndarray, least: np.ndarray) -> np.ndarray:
         """dlambda, de for right-hand sides c_1 (num, n), c_2 (num, 14) at fixed y."""
-        along = np.einsum("pri,pi->pr", self.contact, balance) + least
-        multipliers = np.einsum("prs,ps->pr", self.inverse, along)
-        return multipliers, balance - np.einsum("pri,pr->pi", self.contact, multipliers)
+        along = self.contact @ balance[..., None] + least[..., None]
+        multipliers = self.inverse @ along
+        carried = np.swapaxes(self.contact, 1, 2) @ multipliers
+        return np.concatenate([multipliers[..., 0], balance - carried[..., 0]], axis=1)
 
     def rows(self, multipliers: np.ndarray, residuals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The transposed problem: weights of both laws for local right-hand sides b."""
-        along = np.einsum("pri,pi->pr", self.contact, residuals) - multipliers
-        least = np.einsum("prs,ps->pr", self.inverse, along)
-        return np.einsum("pri,pr->pi", self.contact, least) - residuals, least
+        along = self.contact @ residuals[..., None] - multipliers[..., None]
+        least = self.inverse @ along
+        carried = np.swapaxes(self.contact, 1, 2) @ least
+        return carried[..., 0] - residuals, least[..., 0]
 
     def rows_by_shared(
         self, partials: Partials, num_rows: int, tau_by_time: np.ndarray
     ) -> np.ndarray:
-        """Derivatives of rows by y, through the local unknowns too (num, num_rows, shared)."""
+        """Derivatives of rows by y at fixed local unknowns (num, num_rows, shared)."""
         num, _, n = self.contact.shape
         shared = self.by_shared.shape[2]
         own = shared - NUM_LATE
@@ -97,8 +99,8 @@ class LocalElimination:
                 out[:, :, order : 3 * n : 3] += partial
         if partials.f is not None:
             out[:, :, 3 * n : own] += partials.f
-        out[:, :, own:] = out[:, :, :own] @ self.late
         late = out[:, :, own:]
+        late += out[:, :, :own] @ self.late
         if partials.tau is not None:
             late[:, :, : tau_by_time.shape[1]] += partials.tau[:, :, None] * tau_by_time[:, None]
         if partials.stride_time is not None:
@@ -107,8 +109,4 @@ class LocalElimination:
             late[:, :, 1:4] += partials.events
         if partials.placement is not None:
             late[:, :, 4:] += partials.placement
-        if partials.multipliers is not None:
-            out += partials.multipliers @ self.by_shared[:, : feet.NUM_ROWS]
-        if partials.residuals is not None:
-            out += partials.residuals @ self.by_shared[:, feet.NUM_ROWS :]
         return out

@@ -13,7 +13,6 @@ Rows of no control point that are equalities (average speed) keep their multipli
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import scipy.linalg
@@ -22,12 +21,13 @@ import scipy.sparse
 from drakegait.program.equations_of_motion import EquationsOfMotion
 from drakegait.program.excitation import Excitation
 from drakegait.program.gait_program import GaitProgram
-from drakegait.program.hessian_blocks import NUM_LATE
+from drakegait.program.hessian_blocks import HEELS, NUM_LATE, HessianBlocks
 from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
 from drakegait.program.local_rows import DenseRows
 from drakegait.solvers.condensed.assembly import Assembly
 from drakegait.solvers.condensed.local_elimination import LocalElimination
+from drakegait.solvers.condensed.local_variables import LocalVariables, hessian_times
 from drakegait.solvers.condensed.sparse_structure import SparseStructure
 from drakegait.walker import feet
 
@@ -40,17 +40,23 @@ class Linearisation:
 
     Attributes:
         jacobian: of all rows, sparse.
-        lagrangian: Hessian of the Lagrangian and the excitation rows' stiffness, sparse.
+        blocks, bends: Hessian of the Lagrangian and the excitation rows' stiffness, at the
+            control points and of the timing rows.
         stiffness: S of all rows, 0 for equalities (num_constraints,).
         diagonal: the barrier's second derivatives by the unknowns (num_variables,).
         elimination: of the local unknowns.
+        local, mixed: second derivatives by local unknowns, and by those and the shared ones, with
+            the barrier and the inequality rows (num, 14 + n, 14 + n), (num, 14 + n, shared).
     """
 
     jacobian: scipy.sparse.csr_array
-    lagrangian: scipy.sparse.csr_array
+    blocks: HessianBlocks
+    bends: np.ndarray
     stiffness: np.ndarray
     diagonal: np.ndarray
     elimination: LocalElimination
+    local: np.ndarray
+    mixed: np.ndarray
 
 
 class CondensedSystem:
@@ -59,25 +65,16 @@ class CondensedSystem:
     def __init__(self, program: GaitProgram, hessian: LagrangianHessian):
         self._program, self._hessian = program, hessian
         self.num_shared = program.design.offsets["multipliers"]
+        self._arms = program.formulation.walker.muscles.moment_arms
         self._assembly = Assembly(program, self.num_shared)
         shape = (program.num_constraints, program.num_variables)
         self._jacobian = SparseStructure(program.jacobian_rows, program.jacobian_columns, shape)
-        off = hessian.rows != hessian.columns
-        self._off = np.flatnonzero(off)
-        size = program.num_variables
-        self._lagrangian = SparseStructure(
-            np.concatenate([hessian.rows, hessian.columns[off]]),
-            np.concatenate([hessian.columns, hessian.rows[off]]),
-            (size, size),
-        )
+        self._variables = LocalVariables(program)
         self._locate_local()
         self._classify_rows()
 
     def _locate_local(self) -> None:
-        program, layout = self._program, self._program.points.layout
-        columns = slice(layout.multipliers, layout.size)
-        self._local = program.selection.index[:, columns]  # (num, 14 + n), -1 where none
-        self._local_scale = program.selection.factor[:, columns]
+        program = self._program
         numbers = {type(item): k for k, item in enumerate(program.constraints)}
         self._balance, self._least = (program.row_numbers[numbers[kind]] for kind in _ELIMINATED)
         self._balance_scale, self._least_scale = (
@@ -126,67 +123,71 @@ class CondensedSystem:
             stiffness, diagonal, jacobian: see `Linearisation`.
         """
         state = self._program.state(x)
-        entries, curvature = self._hessian.values_and_blocks(x, multipliers, 1.0, stiffness)
-        lagrangian = self._lagrangian.matrix(np.concatenate([entries, entries[self._off]]))
+        curvature = self._hessian.local_curvature(state, multipliers, 1.0, stiffness)
         elimination = LocalElimination.at(state, curvature)
-        self.at = Linearisation(jacobian, lagrangian, stiffness, diagonal, elimination)
-        size, n = self.num_shared, state.q.shape[1]
-        by_shared = elimination.by_shared
+        timing = self._program.timing
+        bends = timing.curvature(multipliers[self._program.first_timing_row :])
+        size, blocks, by_shared = self.num_shared, curvature.blocks, elimination.by_shared
+        num, n = state.q.shape
         late = by_shared.shape[2] - NUM_LATE
-        # Lagrangian by local unknowns, and by these and the shared ones, physical units.
-        local = self._local_hessian(lagrangian, diagonal)
-        mixed = np.zeros_like(by_shared)
-        blocks = curvature.blocks
-        mixed[:, : feet.NUM_ROWS, : 3 * n : 3] = curvature.physical.multipliers
-        mixed[:, feet.NUM_ROWS :, : 3 * n : 3] = curvature.physical.residuals
-        time = slice(late, late + blocks.multiplier_time.shape[2])
-        mixed[:, : feet.NUM_ROWS, time] = blocks.multiplier_time
-        mixed[:, feet.NUM_ROWS :, time] = blocks.residual_time
-        mixed[self._local < 0] = 0.0
-        half = np.swapaxes(by_shared, 1, 2) @ (mixed + 0.5 * local @ by_shared)
-        dense = half + np.swapaxes(half, 1, 2)
+        # Without the shared unknowns' part in the local ones, then with it.
+        local, mixed = self._local_hessian(blocks, diagonal), self._mixed_hessian(blocks, late)
+        dense = np.zeros((num, by_shared.shape[2], by_shared.shape[2]))
+        dense[:, : 3 * n, : 3 * n] = blocks.motion.reshape(num, 3 * n, 3 * n)
+        dense[:, late:, late:] = blocks.late
         for constraint, numbers in self._dense_rows:
-            rows = elimination.rows_by_shared(
-                constraint.partials(state), constraint.num_rows, blocks.tau_by_time
-            )
+            partials = constraint.partials(state)
             weight = np.append(stiffness, 0.0)[numbers] / constraint.scale**2
-            dense += np.swapaxes(rows, 1, 2) @ (weight[:, :, None] * rows)
-        matrix = lagrangian[:size, :size].toarray()
+            if partials.multipliers is not None:
+                contacts = local[:, : feet.NUM_ROWS, : feet.NUM_ROWS]
+                _add_square(contacts, partials.multipliers, weight)
+            if partials.q is not None:
+                rows = elimination.rows_by_shared(
+                    partials, constraint.num_rows, blocks.tau_by_time
+                )
+                _add_square(dense, rows, weight)
+        half = np.swapaxes(by_shared, 1, 2) @ (mixed + 0.5 * local @ by_shared)
+        dense += half
+        dense += np.swapaxes(half, 1, 2)
+        matrix = self._assembly.matrix(dense, blocks)
         matrix[np.arange(size), np.arange(size)] += diagonal[:size]
-        self._assembly.add(matrix, dense, blocks.b)
+        # An event may end one phase and begin another.
+        np.add.at(matrix, (timing.curved_rows, timing.curved_columns), bends)
+        np.add.at(matrix, (timing.curved_columns, timing.curved_rows), bends)
         rows = jacobian[self._shared_inequalities][:, :size].toarray()
         matrix += rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
         self._border = jacobian[self._shared_equalities][:, :size].toarray()
         self.matrix = matrix
+        self.at = Linearisation(
+            jacobian, blocks, bends, stiffness, diagonal, elimination, local, mixed
+        )
 
-    def _local_hessian(
-        self, lagrangian: scipy.sparse.csr_array, diagonal: np.ndarray
-    ) -> np.ndarray:
+    def _local_hessian(self, blocks: HessianBlocks, diagonal: np.ndarray) -> np.ndarray:
         """Second derivatives by local unknowns (num, 14 + n, 14 + n), physical units."""
-        start = self.num_shared
-        corner = lagrangian[start:, start:].tocoo()
-        num, count = self._local.shape
+        variables = self._variables
+        num, count = variables.used.shape
         out = np.zeros((num, count, count))
-        point, position = self._places
-        row, column = corner.row, corner.col
-        same = point[row] == point[column]
-        out[point[row][same], position[row][same], position[column][same]] = corner.data[same]
-        size = np.where(self._local >= 0, self._local_scale, 1.0)
-        out /= size[:, :, None] * size[:, None]
-        which = np.arange(count)
-        safe = np.where(self._local >= 0, self._local, 0)
-        out[:, which, which] += np.where(self._local >= 0, diagonal[safe], 0.0) / size**2
+        which, rows = np.arange(count), np.arange(feet.NUM_ROWS)
+        out[:, rows, rows] = blocks.multipliers
+        out[:, HEELS, HEELS + 3] = out[:, HEELS + 3, HEELS] = blocks.heel_toe
+        out *= variables.used[:, :, None] & variables.used[:, None]
+        safe = np.where(variables.used, variables.index, 0)
+        scale = np.where(variables.used, variables.scale, np.inf)
+        out[:, which, which] += diagonal[safe] / scale**2
         return out
 
-    @cached_property
-    def _places(self) -> tuple[np.ndarray, np.ndarray]:
-        """Control point and position there of every local unknown."""
-        num = self._program.num_variables - self.num_shared
-        point, position = np.zeros(num, dtype=int), np.zeros(num, dtype=int)
-        k, i = np.nonzero(self._local >= 0)
-        point[self._local[k, i] - self.num_shared] = k
-        position[self._local[k, i] - self.num_shared] = i
-        return point, position
+    def _mixed_hessian(self, blocks: HessianBlocks, late: int) -> np.ndarray:
+        """Second derivatives by local and shared unknowns (num, 14 + n, shared)."""
+        num, count = self._variables.used.shape
+        n = count - feet.NUM_ROWS
+        out = np.zeros((num, count, late + NUM_LATE))
+        out[:, : feet.NUM_ROWS, : 3 * n : 3] = blocks.multiplier_motion
+        out[:, feet.NUM_ROWS :, : 3 * n : 3] = blocks.residual_motion
+        time = slice(late, late + blocks.multiplier_time.shape[2])
+        out[:, : feet.NUM_ROWS, time] = blocks.multiplier_time
+        out[:, feet.NUM_ROWS :, time] = blocks.residual_time
+        out *= self._variables.used[:, :, None]
+        return out
 
     def factor(self, shift: float) -> bool:
         """Factorise K + shift I; False if that is not positive definite."""
@@ -228,8 +229,13 @@ class CondensedSystem:
 
     def _times(self, x: np.ndarray) -> np.ndarray:
         """(W + J_I^T S J_I) x."""
-        at = self.at
-        out = at.lagrangian @ x + at.diagonal * x
+        at, timing, size = self.at, self._program.timing, self._program.num_variables
+        rows = at.blocks.rows
+        change = hessian_times(at.blocks, self._arms, self._variables.of(x, rows))
+        out = self._variables.transposed(change, rows) + at.diagonal * x
+        pairs = timing.curved_rows, timing.curved_columns
+        for one, other in (pairs, pairs[::-1]):
+            out += np.bincount(one, at.bends * x[other], size)
         out[: self.num_shared] += self.shift * x[: self.num_shared]
         return out + at.jacobian.T @ (self._others * at.stiffness * (at.jacobian @ x))
 
@@ -240,49 +246,46 @@ class CondensedSystem:
         return rest_b, np.where(self.equality, c + self.at.jacobian @ x, 0.0)
 
     def _once(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        jacobian, size = self.at.jacobian, self.num_shared
-        x = np.zeros(len(b))
-        x[size:] = self._follow(c)  # at fixed shared unknowns
-        wanted = b - self._times(x)
-        # b_u + T^T b_w, with T the local unknowns by the shared ones
-        weights = self._weigh(wanted)
-        reduced = (wanted - jacobian.T @ weights)[:size]
-        rows = self._shared_equalities
+        at, size, variables = self.at, self.num_shared, self._variables
+        by_shared, rows = at.elimination.by_shared, at.blocks.rows[:, :3]
+        local = self._follow(c)  # at fixed shared unknowns
+        wanted = variables.local(b)
+        rest = (wanted - (at.local @ local[..., None])[..., 0])[:, None]
+        shares = (rest @ by_shared - local[:, None] @ at.mixed)[:, 0]
+        reduced = b[:size] + variables.by_shared(shares, rows)[:size]
+        border = self._shared_equalities
         y = np.zeros(len(c))
-        if len(rows):
-            rest = c[rows] + jacobian[rows] @ x
-            reduced = reduced - self._weight * self._border.T @ rest
+        if len(border):
+            reduced = reduced - self._weight * self._border.T @ c[border]
             shared = scipy.linalg.cho_solve(self._factor, reduced, check_finite=False)
-            y[rows] = np.linalg.solve(self._schur, self._border @ shared + rest)
-            shared -= self._by_border @ y[rows]
+            y[border] = np.linalg.solve(self._schur, self._border @ shared + c[border])
+            shared -= self._by_border @ y[border]
         else:
             shared = scipy.linalg.cho_solve(self._factor, reduced, check_finite=False)
-        step = np.zeros(len(b))
-        step[:size] = shared
-        step[size:] = self._follow(jacobian @ step)
-        x += step
-        y += self._weigh(b - self._times(x))
+        x = np.zeros(len(b))
+        x[:size] = shared
+        along = variables.shared(x, rows)[..., None]
+        local = local + (by_shared @ along)[..., 0]
+        variables.into(x, local)
+        y += self._weigh(wanted - (at.local @ local[..., None] + at.mixed @ along)[..., 0])
         return x, y
 
     def _follow(self, rows: np.ndarray) -> np.ndarray:
-        """Local unknowns that make up for `rows` of the eliminated laws, scaled."""
+        """Local unknowns that make up for `rows` of the eliminated laws (num, 14 + n)."""
         padded = np.append(rows, 0.0)
         balance = padded[self._balance] * self._balance_scale
         least = padded[self._least] * self._least_scale
-        local = np.concatenate(self.at.elimination.local(balance, least), axis=1)
-        out = np.zeros(self._program.num_variables - self.num_shared)
-        used = self._local >= 0
-        out[self._local[used] - self.num_shared] = local[used] / self._local_scale[used]
-        return out
+        return np.where(self._variables.used, self.at.elimination.local(balance, least), 0.0)
 
-    def _weigh(self, b: np.ndarray) -> np.ndarray:
-        """Multipliers of the eliminated laws that balance `b` in the local unknowns."""
-        used = self._local >= 0
-        local = np.zeros(self._local.shape)
-        local[used] = b[self._local[used]] / self._local_scale[used]
+    def _weigh(self, local: np.ndarray) -> np.ndarray:
+        """Multipliers of the eliminated laws that balance `local` (num, 14 + n)."""
         count = feet.NUM_ROWS
         balance, least = self.at.elimination.rows(local[:, :count], local[:, count:])
         out = np.zeros(len(self.equality) + 1)
         out[self._balance] = balance * self._balance_scale
         out[self._least] = least * self._least_scale
         return out[:-1]
+
+
+def _add_square(matrix: np.ndarray, rows: np.ndarray, weight: np.ndarray) -> None:
+    matrix += np.swapaxes(rows, 1, 2) @ (weight[:, :, None] * rows)
