@@ -29,7 +29,12 @@ from drakegait.program.load_penalty import LoadPenalty
 from drakegait.program.local_costs import Deviation, MetabolicCost
 from drakegait.program.local_rows import LocalRows
 from drakegait.program.local_state import LocalState
-from drakegait.program.physical_hessian import LawWeights, PhysicalHessian, physical_hessian
+from drakegait.program.physical_hessian import (
+    LawWeights,
+    PhysicalHessian,
+    hessian_of_muscles,
+    physical_hessian,
+)
 from drakegait.walker.dynamics_curvature import DynamicsCurvature
 
 
@@ -134,6 +139,14 @@ class LagrangianHessian:
         add_friction(blocks, weights)
         add_footprints(blocks, weights)
         return LocalCurvature(blocks, directions, physical)
+
+    def muscle_blocks(self, curvature: LocalCurvature, muscles: np.ndarray) -> HessianBlocks:
+        """Second derivatives (num, m, 6, 6) by the muscles' inputs, carried to the control points'
+        variables at the state of `curvature`."""
+        blocks, arms = HessianBlocks(curvature.blocks.state), self._spans.arms
+        physical = hessian_of_muscles(curvature.physical, muscles, arms)
+        carry(blocks, physical, curvature.directions, arms)
+        return blocks
 
     def _weights(self, multipliers: np.ndarray, power: int = 1) -> LawWeights:
         program, padded = self._program, np.append(multipliers, 0.0)

@@ -35,6 +35,8 @@ class PhysicalHessian:
         force, force_first: by muscle forces (num, m, 3, 3) and (num, m, 3).
         cross: by a muscle's force and its length (num, m, 3, 3).
         multipliers, residuals: by those and the coordinates (num, 14, n), (num, n, n).
+        muscles: what the muscles contribute to `motion`, `force` and `cross`, by their inputs f,
+            f', f'', l, l', l'' and without springs (num, m, 6, 6).
     """
 
     motion: np.ndarray
@@ -44,6 +46,7 @@ class PhysicalHessian:
     cross: np.ndarray
     multipliers: np.ndarray
     residuals: np.ndarray
+    muscles: np.ndarray
 
 
 def physical_hessian(
@@ -76,21 +79,48 @@ def physical_hessian(
     motion[:, :, 2, :, 0] = np.swapaxes(blocks.qa, 1, 2)
     first = _first_derivatives(state, balance, velocities, contact, weights(JointLimits))
     excitation = excitation_weights(walker, weights(Excitation))
-    muscles, by_muscle = _muscles(state, excitation, power)
+    curved, by_muscle = _muscles(state, excitation, power)
+    muscles = curved
     if springs is not None:
         slopes = excitation_rows(walker, state.muscles[1][:, :, :2])
         stiff = springs.reshape(*slopes.shape[:3], 1) * slopes
-        muscles = muscles + np.swapaxes(slopes, 2, 3) @ stiff
+        muscles = curved + np.swapaxes(slopes, 2, 3) @ stiff
     arms = walker.muscles.moment_arms
-    # Muscle lengths are l0 - arms q.
-    motion += np.einsum("mi,pmab,mj->piajb", arms, muscles[:, :, 3:, 3:], arms, optimize=True)
+    motion += _by_lengths(muscles, arms)
     first -= np.einsum("pma,mi->pia", by_muscle[:, :, 3:], arms)
     force_first = by_muscle[:, :, :3].copy()
     force_first[:, :, 0] -= balance @ arms.T
     return PhysicalHessian(
         motion, first, muscles[:, :, :3, :3], force_first, muscles[:, :, :3, 3:],
-        np.swapaxes(blocks.ql, 1, 2), np.swapaxes(blocks.qe, 1, 2),
+        np.swapaxes(blocks.ql, 1, 2), np.swapaxes(blocks.qe, 1, 2), curved,
     )  # fmt: skip
+
+
+def hessian_of_muscles(
+    physical: PhysicalHessian, muscles: np.ndarray, arms: np.ndarray
+) -> PhysicalHessian:
+    """As `physical`, with second derivatives by the muscles' inputs (num, m, 6, 6) and no others.
+
+    Args:
+        arms: moment arms (m, n).
+    """
+    rest = {
+        name: np.zeros_like(getattr(physical, name))
+        for name in ("motion_first", "force_first", "multipliers", "residuals")
+    }
+    return PhysicalHessian(
+        motion=_by_lengths(muscles, arms),
+        force=muscles[:, :, :3, :3],
+        cross=muscles[:, :, :3, 3:],
+        muscles=muscles,
+        **rest,
+    )
+
+
+def _by_lengths(muscles: np.ndarray, arms: np.ndarray) -> np.ndarray:
+    """By coordinates and orders (num, n, 3, n, 3): muscle lengths are l0 - arms q."""
+    lengths = muscles[:, :, 3:, 3:]
+    return np.einsum("mi,pmab,mj->piajb", arms, lengths, arms, optimize=True)
 
 
 def _first_derivatives(

@@ -2,10 +2,14 @@
 
     min f(x) - mu sum log(slack)   s.t.  c_E(x) = 0,  g(x) - s = 0
 
-for a falling sequence of barrier parameters mu; line search with a filter, second-order
-corrections, multiples of the identity added to K where it is not positive definite.
-The algorithm is that of IPOPT (Waechter & Biegler 2006, equation numbers below) without a
-restoration phase: where no step is acceptable the method says so.
+for a falling sequence of barrier parameters mu; line search with a filter and second-order
+corrections. The algorithm is that of IPOPT (Waechter & Biegler 2006, equation numbers below)
+without a restoration phase (where no step is acceptable the method says so), and with three
+additions:
+
+- corners of the energy rate are rounded widely at first and narrow with mu (`smoothing`);
+- what makes K positive definite is looked for in the muscles first (`Regularisation`);
+- steps that a few bounds cut short are corrected (`Targets`).
 """
 
 from __future__ import annotations
@@ -13,19 +17,21 @@ from __future__ import annotations
 import numpy as np
 
 from drakegait.program.gait_program import GaitProgram
+from drakegait.solvers.condensed.centrality import CORRECTIONS, LONG, WORTH, Targets
 from drakegait.solvers.condensed.filter import Filter
 from drakegait.solvers.condensed.iterate import Errors, Multipliers, inside, longest_step
+from drakegait.solvers.condensed.regularisation import Regularisation
 from drakegait.solvers.condensed.system import CondensedSystem
 
 _TAU = 0.99  # smallest fraction to the boundary (8)
-_PUSH = 1e-2  # of a range, between a start and its bounds (section 3.6)
-_KAPPA_EPS, _KAPPA_MU, _THETA_MU = 10.0, 0.2, 1.5  # barrier problem, (7)
+_KAPPA_EPS, _KAPPA_MU, _THETA_MU = 30.0, 0.2, 1.5  # barrier problem, (7)
 _KAPPA_SIGMA = 1e10  # (16)
 _LEAST_KNOWN = 0.1  # of mu over the distance to a bound, for multipliers from elsewhere
 _SCALE_MAX = 100.0  # s_max of (5)
 _CORRECTIONS, _CORRECTED = 4, 0.99  # second-order corrections (section 2.4)
-_SHIFTS = 1e-4, 1e-20, 1e40  # first, smallest, largest multiple of the identity (section 3.1)
-_SHIFT_UP, _SHIFT_UP_FIRST, _SHIFT_DOWN = 8.0, 100.0, 1.0 / 3.0
+_NARROW = 1e-6  # the barrier parameter at which corners have their own width
+# Full steps that change the cost by less than this part of itself creep, if there are so many.
+_LITTLE_CHANGE, _FULL, _CREEPING = 1e-3, 0.95, 2
 
 
 class InteriorPoint:
@@ -36,8 +42,8 @@ class InteriorPoint:
         x: start.
         barrier: first mu.
         last_barrier: smallest mu.
-        known: multipliers of rows and of lower and upper bounds from a solve nearby.
         push: least distance of the start from its bounds, relative.
+        known: multipliers of rows and of lower and upper bounds from a solve nearby.
     """
 
     def __init__(
@@ -47,8 +53,8 @@ class InteriorPoint:
         x: np.ndarray,
         barrier: float,
         last_barrier: float,
+        push: float,
         known: Multipliers | None = None,
-        push: float = _PUSH,
     ):
         self.program, self.system = program, system
         self._inequality = np.flatnonzero(~system.equality)
@@ -64,8 +70,9 @@ class InteriorPoint:
         )
         self.w = np.concatenate([x, slacks])
         self.barrier, self._last_barrier = barrier, last_barrier
-        self.shift = 0.0
+        self._regularisation, self._small_steps = Regularisation(system), 0
         self.multipliers = self._first_multipliers(known)
+        program.smoothing = self.smoothing
         self._evaluate()
         self._filter = Filter(np.abs(self._primal).sum())
 
@@ -83,6 +90,11 @@ class InteriorPoint:
     def _gaps(self, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Distances to the bounds, infinite where there is none."""
         return w - self._low, self._high - w
+
+    @property
+    def smoothing(self) -> float:
+        """Factor on the widths of rounded corners: 1 at the last barrier parameters."""
+        return max(1.0, (self.barrier / max(self._last_barrier, _NARROW)) ** 0.5)
 
     # Evaluation --------------------------------------------------------------------------
 
@@ -152,6 +164,10 @@ class InteriorPoint:
             smaller = factor * self.barrier
         self.barrier = max(self._last_barrier, smaller)
         self._filter.clear()
+        self._small_steps = 0
+        if self.smoothing != self.program.smoothing:
+            self.program.smoothing = self.smoothing
+            self._evaluate()
 
     @property
     def at_last_barrier(self) -> bool:
@@ -172,31 +188,18 @@ class InteriorPoint:
         self.system.linearise(
             self.x, z.rows, by_row, stiffness[: self._size], self._jacobian
         )
-        if not self._factor(0.0):
+        if not self._regularisation.factor(self._small_steps >= _CREEPING):
             return False
+        targets = Targets.equal(self.barrier, len(self.w))
+        push = targets.push(low, high)
         while True:
-            push = self.barrier / high - self.barrier / low  # the barrier's gradient
             direction = self._direction(self._primal, stiffness, push)
+            if self._centred(direction, stiffness, targets):
+                return True
             if self._search(direction, stiffness, push):
                 return True
-            if self.shift > 1e4 or not self._factor(max(8.0 * self.shift, 1e-2)):
+            if not self._regularisation.more():
                 return False
-
-    def _factor(self, shift: float) -> bool:
-        """Factorise with the smallest multiple of the identity, at least `shift`, that serves."""
-        first, smallest, largest = _SHIFTS
-        last = self.shift
-        up = _SHIFT_UP if last > 0.0 else _SHIFT_UP_FIRST
-        if self.system.factor(shift):
-            self.shift = shift if shift > 0.0 else last
-            return True
-        shift = max(shift, first if last == 0.0 else max(smallest, _SHIFT_DOWN * last))
-        while shift <= largest:
-            if self.system.factor(shift):
-                self.shift = shift
-                return True
-            shift *= up
-        return False
 
     def _direction(
         self, primal: np.ndarray, stiffness: np.ndarray, push: np.ndarray
@@ -213,6 +216,37 @@ class InteriorPoint:
         dy[rows] = slack_stiffness * ds - rest
         return np.concatenate([dx, ds]), dy
 
+    def _centred(
+        self, direction: tuple[np.ndarray, np.ndarray], stiffness: np.ndarray, targets: Targets
+    ) -> bool:
+        """A longer step by corrected targets; moves if there is one and it is accepted."""
+        low, high = self._gaps(self.w)
+        fraction, push = self._fraction, targets.push(low, high)
+        longest = longest_step(low, high, direction[0], fraction)
+        better = None
+        for _ in range(CORRECTIONS):
+            if longest > LONG:
+                break
+            corrected = targets.corrected(
+                self.barrier, low, high, self.multipliers, direction[0], longest
+            )
+            other = self._direction(self._primal, stiffness, corrected.push(low, high))
+            length = longest_step(low, high, other[0], fraction)
+            if length < longest + WORTH:
+                break
+            targets, direction, longest, better = corrected, other, length, other
+        if better is None:
+            return False
+        dw, dy = better
+        trial = self.w + longest * dw
+        measures, _ = self._measure(trial)
+        theta, phi = np.abs(self._primal).sum(), self._barrier_cost(self.w, self.cost)
+        slope = float(self._gradient @ dw[: self._size] + push @ dw)
+        if not self._filter.accepts(theta, phi, measures, slope, longest):
+            return False
+        self._move(trial, dw, dy, longest, targets)
+        return True
+
     def _search(
         self,
         direction: tuple[np.ndarray, np.ndarray],
@@ -221,18 +255,18 @@ class InteriorPoint:
     ) -> bool:
         """Backtracking line search; moves if a step is accepted."""
         dw, dy = direction
-        fraction = max(_TAU, 1.0 - self.barrier)
-        longest = longest_step(*self._gaps(self.w), dw, fraction)
+        longest = longest_step(*self._gaps(self.w), dw, self._fraction)
         theta = np.abs(self._primal).sum()
         phi = self._barrier_cost(self.w, self.cost)
         slope = float(self._gradient @ dw[: self._size] + push @ dw)
         smallest = self._filter.smallest_step(theta, slope)
         step, first = longest, True
+        equal = Targets.equal(self.barrier, len(dw))
         while step >= max(smallest, 1e-8):
             trial = self.w + step * dw
             measures, primal = self._measure(trial)
             if self._filter.accepts(theta, phi, measures, slope, step):
-                self._move(trial, dw, dy, step)
+                self._move(trial, dw, dy, step, equal)
                 return True
             worse = first and theta <= measures[0] < np.inf
             if worse and self._correct(primal, stiffness, push, theta, phi, slope, step):
@@ -247,15 +281,14 @@ class InteriorPoint:
     ) -> bool:  # fmt: skip
         """Second-order corrections of the longest step."""
         total = step * self._primal + primal
-        before = np.inf
-        fraction = max(_TAU, 1.0 - self.barrier)
+        before, equal = np.inf, Targets.equal(self.barrier, len(self.w))
         for _ in range(_CORRECTIONS):
             dw, dy = self._direction(total, stiffness, push)
-            longest = longest_step(*self._gaps(self.w), dw, fraction)
+            longest = longest_step(*self._gaps(self.w), dw, self._fraction)
             trial = self.w + longest * dw
             measures, primal = self._measure(trial)
             if self._filter.accepts(theta, phi, measures, slope, step):
-                self._move(trial, dw, dy, longest)
+                self._move(trial, dw, dy, longest, equal)
                 return True
             if not measures[0] <= _CORRECTED * before:
                 return False
@@ -271,17 +304,21 @@ class InteriorPoint:
         cost = self._barrier_cost(w, self.program.cost(w[: self._size]))
         return (theta, cost if np.isfinite(cost) else np.inf), primal
 
-    def _move(self, w: np.ndarray, dw: np.ndarray, dy: np.ndarray, step: float) -> None:
+    @property
+    def _fraction(self) -> float:
+        """Of the distance to a bound that a step may use, (8)."""
+        return max(_TAU, 1.0 - self.barrier)
+
+    def _move(
+        self, w: np.ndarray, dw: np.ndarray, dy: np.ndarray, step: float, targets: Targets
+    ) -> None:
         """Accept `w`; the multipliers follow."""
-        z, barrier = self.multipliers, self.barrier
-        low, high = self._gaps(self.w)
-        d_low = barrier / low - z.lower - z.lower / low * dw
-        d_high = barrier / high - z.upper + z.upper / high * dw
-        fraction = max(_TAU, 1.0 - barrier)
+        z, barrier, before = self.multipliers, self.barrier, self.cost
+        d_low, d_high = targets.changes(*self._gaps(self.w), z, dw)
         free = np.full(len(w), np.inf)
         longest = min(
-            longest_step(z.lower, free, d_low, fraction),
-            longest_step(z.upper, free, d_high, fraction),
+            longest_step(z.lower, free, d_low, self._fraction),
+            longest_step(z.upper, free, d_high, self._fraction),
         )
         self.w = w
         new_low, new_high = self._gaps(w)
@@ -295,3 +332,5 @@ class InteriorPoint:
             guarded(z.upper + longest * d_high, new_high),
         )
         self._evaluate()
+        small = step >= _FULL and abs(self.cost - before) < _LITTLE_CHANGE * abs(before)
+        self._small_steps = self._small_steps + 1 if small else 0

@@ -23,10 +23,10 @@ from drakegait.solvers.options import SolverOptions
 from drakegait.solvers.settled import Settled
 from drakegait.solvers.solution import Solution
 
-FIRST_BARRIER, WARM_BARRIER = 1e-2, 1e-4
+FIRST_BARRIER, WARM_BARRIER = 1e-3, 1e-4
 # Of a start from its bounds, relative. With multipliers the start may stand further off: what
 # is at its bound goes back there in a few steps, and the others move freely.
-_PUSH, _WARM_PUSH, _KNOWN_PUSH = 1e-2, 1e-4, 1e-3
+_PUSH, _WARM_PUSH, _KNOWN_PUSH = 0.2, 1e-4, 1e-3
 _LAST_BARRIER = 0.09  # of the tolerance on complementarity
 
 
@@ -65,7 +65,8 @@ def solve_condensed(
     while not status:
         errors = method.errors(0.0)
         if (
-            errors.dual <= options.optimality
+            method.smoothing == 1.0
+            and errors.dual <= options.optimality
             and errors.primal <= options.feasibility
             and errors.complementarity <= complementarity
         ):
@@ -87,6 +88,7 @@ def solve_condensed(
             iterations += 1
             monitor.step(method.x, iterations)
             settled.after(method.cost, method.violation, method.barrier)
+    program.smoothing = 1.0
     if not status:
         return _by_ipopt(program, method.x, options, monitor, True, f"{detail}: on by ipopt-mumps")
     end = method.x if status == "converged" or monitor.best is None else monitor.best

@@ -26,6 +26,7 @@ from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
 from drakegait.program.local_rows import DenseRows
 from drakegait.solvers.condensed.assembly import Assembly
+from drakegait.solvers.condensed.convexity import convex_excess
 from drakegait.solvers.condensed.local_elimination import LocalElimination
 from drakegait.solvers.condensed.local_variables import LocalVariables, hessian_times
 from drakegait.solvers.condensed.sparse_structure import SparseStructure
@@ -128,13 +129,10 @@ class CondensedSystem:
         timing = self._program.timing
         bends = timing.curvature(multipliers[self._program.first_timing_row :])
         size, blocks, by_shared = self.num_shared, curvature.blocks, elimination.by_shared
-        num, n = state.q.shape
         late = by_shared.shape[2] - NUM_LATE
         # Without the shared unknowns' part in the local ones, then with it.
         local, mixed = self._local_hessian(blocks, diagonal), self._mixed_hessian(blocks, late)
-        dense = np.zeros((num, by_shared.shape[2], by_shared.shape[2]))
-        dense[:, : 3 * n, : 3 * n] = blocks.motion.reshape(num, 3 * n, 3 * n)
-        dense[:, late:, late:] = blocks.late
+        dense = _own(blocks, by_shared.shape[2])
         for constraint, numbers in self._dense_rows:
             partials = constraint.partials(state)
             weight = np.append(stiffness, 0.0)[numbers] / constraint.scale**2
@@ -158,6 +156,7 @@ class CondensedSystem:
         matrix += rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
         self._border = jacobian[self._shared_equalities][:, :size].toarray()
         self.matrix = matrix
+        self._curvature, self._convexifying = curvature, None
         self.at = Linearisation(
             jacobian, blocks, bends, stiffness, diagonal, elimination, local, mixed
         )
@@ -189,9 +188,24 @@ class CondensedSystem:
         out *= self._variables.used[:, :, None]
         return out
 
-    def factor(self, shift: float) -> bool:
-        """Factorise K + shift I; False if that is not positive definite."""
-        matrix = self.matrix.copy()
+    def _lack(self) -> np.ndarray:
+        """What the muscles lack to be convex, as a part of K."""
+        if self._convexifying is None:
+            walker, curvature = self._program.formulation.walker, self._curvature
+            excess = convex_excess(curvature.physical.muscles, walker.muscles)
+            blocks = self._hessian.muscle_blocks(curvature, excess)
+            shared = self.at.elimination.by_shared.shape[2]
+            self._convexifying = self._assembly.matrix(_own(blocks, shared), blocks)
+        return self._convexifying
+
+    def factor(self, shift: float, convexity: float = 0.0) -> bool:
+        """Factorise K + shift I; False if that is not positive definite.
+
+        Args:
+            convexity: share of the muscles' negative curvature that is made up for.
+        """
+        self._added = convexity * self._lack() if convexity > 0.0 else None
+        matrix = self.matrix.copy() if self._added is None else self.matrix + self._added
         size = len(matrix)
         matrix[np.arange(size), np.arange(size)] += shift
         if len(self._border):
@@ -236,7 +250,10 @@ class CondensedSystem:
         pairs = timing.curved_rows, timing.curved_columns
         for one, other in (pairs, pairs[::-1]):
             out += np.bincount(one, at.bends * x[other], size)
-        out[: self.num_shared] += self.shift * x[: self.num_shared]
+        shared = x[: self.num_shared]
+        out[: self.num_shared] += self.shift * shared
+        if self._added is not None:
+            out[: self.num_shared] += self._added @ shared
         return out + at.jacobian.T @ (self._others * at.stiffness * (at.jacobian @ x))
 
     def _residual(
@@ -285,6 +302,15 @@ class CondensedSystem:
         out[self._balance] = balance * self._balance_scale
         out[self._least] = least * self._least_scale
         return out[:-1]
+
+
+def _own(blocks: HessianBlocks, shared: int) -> np.ndarray:
+    """Blocks by motion and by late unknowns at their places in (num, shared, shared)."""
+    num, n = blocks.motion.shape[:2]
+    out = np.zeros((num, shared, shared))
+    out[:, : 3 * n, : 3 * n] = blocks.motion.reshape(num, 3 * n, 3 * n)
+    out[:, shared - NUM_LATE :, shared - NUM_LATE :] = blocks.late
+    return out
 
 
 def _add_square(matrix: np.ndarray, rows: np.ndarray, weight: np.ndarray) -> None:
