@@ -231,7 +231,7 @@ def _sides(base: GaitNumbers, other: GaitNumbers) -> str:
         return "The symmetry of the legs does not change."
     before, after = row.values
     return (
-        f"Symmetry of the legs changes most in: {row.label[0].lower() + row.label[1:]}, symmetry index "
-        f"{number_text(before, 0, True)} % to {number_text(after, 0, True)} % "
+        f"Symmetry of the legs changes most in: {row.label[0].lower() + row.label[1:]}, "
+        f"symmetry index {number_text(before, 0, True)} % to {number_text(after, 0, True)} % "
         "(above 0: more on the right)."
     )

@@ -80,8 +80,8 @@ def who(study: GaitStudy) -> str:
 def differences(base: GaitStudy, other: GaitStudy) -> list[str]:
     """What distinguishes `other` from `base`, statement by statement; empty if nothing does.
 
-    Control points are no statement about a walker and left out. What `other` has comes first, what only `base` has begins with "without", and everything that
-    is a number says both values.
+    Control points are no statement about a walker and left out. What `other` has comes first, what
+    only `base` has begins with "without", and everything that is a number says both values.
     """
     found: list[str] = []
     for phrases in (worn, strengths, disorders, limits):
