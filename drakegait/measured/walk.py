@@ -116,7 +116,7 @@ def import_walk(
     )  # fmt: skip
     fit = StrideFit(skeleton, target)
     before, after = fit.solve()
-    title = f"{Path(motion).name}, {chosen.right_strike:.2f} s"
+    title = f"{Path(motion).name}, stride from {chosen.right_strike:.2f} s"
     reference = reference_of_fit(title, fit, after, measured_forces)
     contacts_table = contact_table(fit, before, after)
     changes = change_table(fit, after, gaps)
