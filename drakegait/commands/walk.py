@@ -26,6 +26,7 @@ from drakegait.commands.screen import (
 )
 from drakegait.commands.unchanged import LABEL, UNCHANGED_FOLDER, known_gait, unchanged
 from drakegait.gait import Gait
+from drakegait.report.study_words import who
 from drakegait.solve import solve
 from drakegait.solvers.options import SolverOptions
 from drakegait.study import GaitStudy
@@ -120,13 +121,7 @@ def _compare(screen: Console, before: Gait, gait: Gait, folder: Path) -> None:
 
 
 def _who(study: GaitStudy) -> str:
-    subject = study.subject
-    worn = "".join(f", {item.mass:g} kg on {item.segment}" for item in study.added_masses)
-    worn += "".join(f", {item.describe()}" for item in study.disorders)
-    return (
-        f"{study.model} walker, {subject.height:g} m, {subject.mass:g} kg{worn}, "
-        f"{study.speed:g} m/s, {study.nodes} nodes"
-    )
+    return f"{who(study)}, {study.speed:g} m/s, {study.nodes} nodes"
 
 
 def _print_end(screen: Console, gait: Gait) -> None:
