@@ -9,7 +9,7 @@ import numpy as np
 
 from drakegait.errors import BadFile
 from drakegait.measured.column_map import axes_matrix
-from drakegait.measured.force_records import THRESHOLD, ForceRecord, make_record
+from drakegait.measured.force_records import THRESHOLD, ForceRecord, check_sides, make_record
 from drakegait.measured.notes import Notes
 from drakegait.measured.time_axis import runs
 
@@ -42,6 +42,8 @@ def read_c3d(
         raise BadFile(path, f"cannot be read as C3D with force plates ({reason}).") from None
     if not plates:
         raise BadFile(path, "holds no force plates (FORCE_PLATFORM), only markers or signals.")
+    plain = [f"plate {number}" for number in range(1, len(plates) + 1)]
+    check_sides(sides, [*plain, *(name.removeprefix("plate ") for name in plain)], plain)
     rate = analog if analog > 0.0 else frames
     begins = first / frames if frames > 0.0 else 0.0
     raw = []

@@ -85,7 +85,7 @@ def import_walk(
     records = turned(records, posture.heading)
     name = Path(forces).name
     if not any(_overlaps(record.series.time, posture.time) for record in records):
-        raise BadFile(forces, "and the motion share no time: "
+        raise BadFile(forces, "shares no time with the motion: "
                       f"{records[0].series.time[0]:.2f} to {records[0].series.time[-1]:.2f} s and "
                       f"{posture.time[0]:.2f} to {posture.time[-1]:.2f} s.")  # fmt: skip
     contacts = find_contacts(posture, records, notes, name)

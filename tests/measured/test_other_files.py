@@ -179,6 +179,8 @@ def test_sides_of_plates_can_be_said(tmp_path, files, capsys):
     write_mot(tmp_path / "grf.mot", columns)
     walk = take((motion, tmp_path / "grf.mot"), sides={"plate1": "r", "plate2": "l"})
     assert not any("swapped" in sentence for sentence in walk.warnings)
+    with pytest.raises(UnknownName, match="'plate3', .* plate1, plate2"):
+        take((motion, tmp_path / "grf.mot"), sides={"plate3": "r"})
 
 
 def test_a_real_person(request):
