@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 import signal
 from pathlib import Path
 
 import pytest
-from gait_cases import reference_gait
+from gait_cases import reference_gait, restated
 from test_cli import TINY, process, refused, request, run
 
 from drakegait.commands import walk as walk_command
@@ -36,9 +37,29 @@ def test_only_what_makes_the_walker_differ_is_left_out():
         unchanged(base)
 
 
-def test_a_guess_is_taken_only_if_it_has_solved_the_unchanged_walk():
-    import dataclasses
+def test_an_interrupted_second_walk_is_compared_all_the_same(capsys, tmp_path, monkeypatch):
+    """Ctrl-C ends it with the best gait so far, which the report calls unfinished."""
+    endings = iter(("converged", "interrupted"))
+    starts = []
 
+    def solve(study, *, guess, **_):
+        starts.append(guess)
+        gait = restated(reference_gait("planar-symmetric"), study)
+        outcome = dataclasses.replace(gait.outcome, status=next(endings))
+        return dataclasses.replace(gait, outcome=outcome)
+
+    monkeypatch.setattr(walk_command, "solve", solve)
+    code, printed, _ = run(
+        capsys, "walk", "--model", "planar-symmetric", "--nodes", "19", "--no-pictures",
+        "--weakness", "soleus=0.5", "--compare", "--out", tmp_path,
+    )  # fmt: skip
+    assert code == 3 and "NOT CONVERGED (interrupted)" in printed
+    assert starts[0] is None and starts[1].study.disorders == ()
+    assert Gait.load(tmp_path / "gait.nc").outcome.status == "interrupted"
+    assert "NOT CONVERGED (interrupted)" in (tmp_path / "report.html").read_text()
+
+
+def test_a_guess_is_taken_only_if_it_has_solved_the_unchanged_walk():
     unfinished = reference_gait("planar-symmetric")
     outcome = dataclasses.replace(unfinished.outcome, status="converged")
     gait = dataclasses.replace(unfinished, outcome=outcome)
