@@ -166,7 +166,9 @@ def _cost(base: GaitNumbers, other: GaitNumbers, hindered: bool) -> list[str]:
     amount = f"{abs(share):.1f} % {'more' if change > 0 else 'less'} than {theirs:.0f} J/m"
     if abs(change) < 0.05:
         return [f"Cost of transport {mine:.0f} J/m, unchanged."]
-    text = f"Walking takes {mine:.0f} J/m ({per_mass:.2f} J/(kg m)), {amount}."
+    text = (
+        f"Walking takes {mine:.0f} J of metabolic energy per m ({per_mass:.2f} J/(kg m)), {amount}."
+    )
     if abs(share) < NOISE:
         return [
             f"{text} That is within the {NOISE:g} % that solves from different starts differ by."

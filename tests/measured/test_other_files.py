@@ -100,7 +100,8 @@ def test_an_import_comes_back_from_its_file(tmp_path, walk):
     assert Reference.load(path).kind == "spatial"
     assert read_subject(path) == SUBJECT
     page = (tmp_path / "subject_quality.html").read_text()
-    for words in ("What was read", "before [mm]", "hip_flexion_r", "heel_l", "<svg", "lumbar"):
+    for words in ("What was read", "before [mm]", "right hip flexion", "left heel",
+                  "% of the stride", "<svg", "lumbar"):
         assert words in page
     assert not re.search(r"(src|href)\s*=\s*['\"]https?:", page)
 
