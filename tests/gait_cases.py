@@ -23,8 +23,8 @@ def program_and_guess(model: str, **statements) -> tuple[GaitStudy, GaitProgram,
 
 
 @functools.cache
-def reference_gait(model: str) -> Gait:
-    study, program, x = program_and_guess(model)
+def reference_gait(model: str, **statements) -> Gait:
+    study, program, x = program_and_guess(model, **statements)
     outcome = Outcome(
         solver="ipopt", status="time_limit", message="out of time", iterations=7, wall_time=1.5,
         setup_time=0.25, num_variables=program.num_variables,

@@ -12,7 +12,8 @@ from drakegait.cli.app import app, number, whole
 @app.command("import")
 def import_(
     motion: Annotated[str, typer.Argument(
-        metavar="MOTION", help="Joint angles: OpenSim .mot or .sto, or CSV.")],
+        metavar="MOTION", help="Joint angles: OpenSim .mot or .sto, or CSV; or "
+        "markers: C3D.")],
     forces: Annotated[str, typer.Argument(
         metavar="FORCES", help="Ground forces: OpenSim .mot or .sto, CSV, or C3D.")],
     height: Annotated[float, typer.Option(
@@ -31,7 +32,8 @@ def import_(
         help="Number of the stride to take, from 1. Default: the best.")] = None,
     columns: Annotated[str | None, typer.Option(
         "--columns", metavar="MAP",
-        help="TOML or JSON file that says which column is what, docs/your_own_data.md.")] = None,
+        help="TOML or JSON file that says which column or marker is what, "
+        "docs/your_own_data.md.")] = None,
     side: Annotated[list[str] | None, typer.Option(
         "--side", metavar="PLATE=SIDE",
         help="Foot on a plate, right or left, if it cannot be told otherwise. "

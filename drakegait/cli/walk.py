@@ -107,7 +107,8 @@ def walk(
         "muscle forces that fit it best.")] = None,
     time_limit: Annotated[float, option(
         "--time-limit", panel=_WAY, metavar="S", parser=number("--time-limit"),
-        help="Wall time in s for the whole solve; then the best gait so far is saved.")] = 3600.0,
+        help="Wall time in s for the whole solve; then the best gait so far is saved. With "
+        "--compare each walker has as much.")] = 3600.0,
     refine: Annotated[bool, option(
         "--refine/--no-refine", panel=_WAY,
         help="Add control points where the check fails and solve again, at most "
@@ -119,16 +120,23 @@ def walk(
     seed: Annotated[int, option(
         "--seed", panel=_WAY, metavar="N", parser=whole("--seed"),
         help="Seed of the noise of --starts.")] = 0,
+    compare: Annotated[bool, option(
+        "--compare", panel=_QUESTION,
+        help="Walk twice: without what makes the walker differ (added masses, strengths, limits, "
+        "disorders) into unchanged/, then with it, and compare both in report.html. A --guess that "
+        "is the unchanged walk is taken as it is.")] = False,
     out: Annotated[str, option(
         "--out", panel=_FILES, metavar="DIR",
-        help="Folder for gait.nc, summary.json, figures/ and replay.html.")] = "out/walk",
+        help="Folder for gait.nc, summary.json, figures/ and replay.html; with --compare also "
+        "unchanged/ and report.html.")] = "out/walk",
     no_pictures: Annotated[bool, option(
-        "--no-pictures", panel=_FILES, help="Leave out figures/ and replay.html.")] = False,
+        "--no-pictures", panel=_FILES,
+        help="Leave out figures/ and replay.html.")] = False,
 ) -> None:  # fmt: skip
     """Find a walking cycle, check it, and save it with pictures.
 
     Ctrl-C ends the solve with the best gait so far. Exit code 0: converged; 3: not converged, the
-    files are written nevertheless; 2: bad input.
+    files are written nevertheless; 2: bad input. With --compare both walkers must have converged.
     """
     from drakegait.commands.request import WalkRequest
     from drakegait.commands.walk import walk as run

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from rich.console import Console
+
 from drakegait.commands.gait_files import gait_path, load_gait
 from drakegait.commands.screen import console, quiet_drake
-from drakegait.report.compare import LONGEST_LABEL, compare
+from drakegait.report.compare import LONGEST_LABEL, Comparison, compare
 from drakegait.report.comparison_words import headline, troubles
 
 NOT_TRUSTED = 3
@@ -26,15 +28,21 @@ def write_comparison(
         comparison.save(out)
         if csv is not None:
             comparison.save_csv(csv)
+    print_findings(screen, comparison)
+    tables = "" if csv is None else f", tables in {csv}"
+    screen.print(f"Report in {out}{tables}.", markup=False, soft_wrap=True)
+    return 0 if comparison.trusted else NOT_TRUSTED
+
+
+def print_findings(screen: Console, comparison: Comparison) -> None:
+    """What the top of the page says: what not to trust, what differs, what happened."""
     for finding in troubles(comparison.numbers):
-        screen.print(finding.text, markup=False, style="bold red" if finding.severe else "yellow")
+        style = "bold red" if finding.severe else "yellow"
+        screen.print(finding.text, markup=False, style=style, soft_wrap=True)
     for summary in headline(comparison.numbers):
         screen.print(f"{summary.title}:", markup=False, soft_wrap=True)
         for sentence in summary.sentences:
             screen.print(f"  {sentence}", markup=False, soft_wrap=True)
-    tables = "" if csv is None else f", tables in {csv}"
-    screen.print(f"Report in {out}{tables}.", markup=False, soft_wrap=True)
-    return 0 if comparison.trusted else NOT_TRUSTED
 
 
 def file_labels(names: Sequence[str]) -> list[str]:

@@ -17,6 +17,7 @@ GAIT_FILE = "gait.nc"
 SUMMARY_FILE = "summary.json"
 FIGURES_FOLDER = "figures"
 REPLAY_FILE = "replay.html"
+REPORT_FILE = "report.html"
 
 
 def gait_path(name: str) -> Path:
@@ -46,7 +47,7 @@ def writable_folder(name: str | Path) -> Path:
     except OSError as error:
         reason = error.strerror or error
         raise BadFile(folder, f"cannot be used as folder for the results ({reason}).") from None
-    for file in (GAIT_FILE, SUMMARY_FILE, REPLAY_FILE):
+    for file in (GAIT_FILE, SUMMARY_FILE, REPLAY_FILE, REPORT_FILE):
         if (folder / file).is_dir():
             raise BadFile(folder / file, "is a folder, but a file must go there.")
     figures = folder / FIGURES_FOLDER

@@ -47,7 +47,10 @@ def _print(walk: ImportedWalk, target: Path) -> None:
     lines.append(
         f"Feet on their prints: worst phase {before:.1f} mm before, {after:.1f} mm after the fit."
     )
-    lines.append(f"Files: {target}, {quality_path(target)}.")
-    lines.append(f"Next: drakegait walk --reference {target}")
+    lines.append(f"Files: {target}, {quality_path(target)}. Look at the page before you go on.")
+    lines.append(
+        f"Next: drakegait walk --reference {target}, and for a comparison for example "
+        "--added-mass foot_r=2 --compare"
+    )
     for line in lines:
         screen.print(line, markup=False, soft_wrap=True)

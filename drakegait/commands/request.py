@@ -10,6 +10,7 @@ from pathlib import Path
 from drakegait.commands.constants import read_constants
 from drakegait.commands.disorder_options import READERS, Texts, read_disorders
 from drakegait.commands.gait_files import load_gait
+from drakegait.commands.unchanged import unchanged
 from drakegait.errors import BadFile, InvalidInput, UnknownName
 from drakegait.gait import Gait
 from drakegait.program.formulation import JointLimit
@@ -57,6 +58,7 @@ class WalkRequest:
     no_pictures: bool
     starts: int = 1
     seed: int = 0
+    compare: bool = False
     weakness: Texts = None
     contracture: Texts = None
     spasticity: Texts = None
@@ -113,6 +115,8 @@ class WalkRequest:
         if guess is not None:
             check_guess(study, guess)
         several_starts(self.starts, self.seed)
+        if self.compare:
+            unchanged(study).formulation()
         study.formulation()  # builds the walker: strengths and weights are judged there
         return study, options, guess
 

@@ -1,7 +1,8 @@
-"""`drakegait walk`: everything is validated, then solved, then saved."""
+"""`drakegait walk`: everything is validated, then solved, then saved, and compared if asked."""
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 from rich.console import Console
@@ -10,6 +11,7 @@ from drakegait.commands.gait_files import (
     FIGURES_FOLDER,
     GAIT_FILE,
     REPLAY_FILE,
+    REPORT_FILE,
     SUMMARY_FILE,
     writable_folder,
     write_summary,
@@ -22,8 +24,11 @@ from drakegait.commands.screen import (
     print_starts,
     quiet_drake,
 )
+from drakegait.commands.unchanged import LABEL, UNCHANGED_FOLDER, known_gait, unchanged
 from drakegait.gait import Gait
+from drakegait.report.study_words import who
 from drakegait.solve import solve
+from drakegait.solvers.options import SolverOptions
 from drakegait.study import GaitStudy
 
 NOT_CONVERGED = 3
@@ -34,38 +39,89 @@ def walk(request: WalkRequest) -> int:
     study, options, guess = request.prepare()
     folder = writable_folder(request.out)
     screen = console()
-    screen.print(f"{_who(study)}. Ctrl-C ends with the best gait so far.", markup=False)
+    if not request.compare:
+        _warn_of_old(screen, folder, REPORT_FILE)
+        gait = _walk(screen, request, study, options, guess, folder)
+        return 0 if gait.converged else NOT_CONVERGED
+    other = writable_folder(folder / UNCHANGED_FOLDER)
+    without = unchanged(study)
+    before = known_gait(without, guess)
+    if before is None:
+        screen.print("First of two walks, the unchanged walker:", style="bold")
+        bare = dataclasses.replace(request, no_pictures=True)
+        before = _walk(screen, bare, without, options, guess, other)
+        if before.outcome.status == "interrupted":
+            _warn_of_old(screen, folder, GAIT_FILE, FIGURES_FOLDER, REPLAY_FILE, REPORT_FILE)
+            _say(screen, "Interrupted in the first of two walks: the second was not solved, and "
+                 "there is no comparison.")  # fmt: skip
+            return NOT_CONVERGED
+    else:
+        _save(before, other)
+        _say(screen, f"{request.guess} is the unchanged walker: not solved again.")
+    # The same instants, so that the difference is the walker's alone.
+    study = study.replace(interior_points=before.study.interior_points)
+    screen.print("\nSecond walk, with what makes the walker differ:", style="bold")
+    gait = _walk(screen, request, study, options, before, folder)
+    _compare(screen, before, gait, folder)
+    return 0 if before.converged and gait.converged else NOT_CONVERGED
+
+
+def _walk(
+    screen: Console, request: WalkRequest, study: GaitStudy, options: SolverOptions,
+    guess: Gait | None, folder: Path,
+) -> Gait:  # fmt: skip
+    """One walk: solved, saved into `folder`, and shown."""
+    _say(screen, f"{_who(study)}. Ctrl-C ends with the best gait so far.")
     with ProgressDisplay(screen) as display:
         gait = solve(
             study, guess=guess, options=options, refine=request.refine, starts=request.starts,
             seed=request.seed, report=display.report,
         )  # fmt: skip
-    gait.save(folder / GAIT_FILE)
-    write_summary(gait.summary(), folder / SUMMARY_FILE)
+    files = _save(gait, folder)
     if gait.report is not None:
         print_report(screen, gait.report)
     print_starts(screen, gait.outcome)
     _print_end(screen, gait)
-    files = [GAIT_FILE, SUMMARY_FILE]
     if request.no_pictures:
-        _warn_of_old_pictures(screen, folder)
+        _warn_of_old(screen, folder, FIGURES_FOLDER, REPLAY_FILE)
     else:
         try:
             files += _pictures(screen, gait, folder)
         except KeyboardInterrupt:
-            screen.print("Interrupted while drawing: pictures are missing or of an earlier gait.")
-    screen.print(f"Files in {folder}: {', '.join(files)}.", markup=False, soft_wrap=True)
-    return 0 if gait.converged else NOT_CONVERGED
+            _say(screen, "Interrupted while drawing: pictures are missing or of an earlier gait.")
+    _say(screen, f"Files in {folder}: {', '.join(files)}.")
+    return gait
+
+
+def _save(gait: Gait, folder: Path) -> list[str]:
+    gait.save(folder / GAIT_FILE)
+    write_summary(gait.summary(), folder / SUMMARY_FILE)
+    return [GAIT_FILE, SUMMARY_FILE]
+
+
+def _compare(screen: Console, before: Gait, gait: Gait, folder: Path) -> None:
+    """Write the report of both walks and say what was found."""
+    from drakegait.commands.compare import print_findings
+    from drakegait.report.compare import compare, default_labels
+
+    quiet_drake()
+    path = folder / REPORT_FILE
+    label = default_labels((before, gait))[1]
+    comparison = compare(before, gait, labels=(LABEL, label))
+    try:
+        with screen.status("comparing ..."):
+            comparison.save(path)
+    except KeyboardInterrupt:
+        _warn_of_old(screen, folder, REPORT_FILE)
+        _say(screen, "Interrupted while comparing: `drakegait compare "
+             f"{folder / UNCHANGED_FOLDER} {folder}` makes up for it.")  # fmt: skip
+        return
+    print_findings(screen, comparison)
+    _say(screen, f"Report in {path}; it opens in any browser and prints.")
 
 
 def _who(study: GaitStudy) -> str:
-    subject = study.subject
-    worn = "".join(f", {item.mass:g} kg on {item.segment}" for item in study.added_masses)
-    worn += "".join(f", {item.describe()}" for item in study.disorders)
-    return (
-        f"{study.model} walker, {subject.height:g} m, {subject.mass:g} kg{worn}, "
-        f"{study.speed:g} m/s, {study.nodes} nodes"
-    )
+    return f"{who(study)}, {study.speed:g} m/s, {study.nodes} nodes"
 
 
 def _print_end(screen: Console, gait: Gait) -> None:
@@ -90,7 +146,7 @@ def _print_end(screen: Console, gait: Gait) -> None:
         f"{gait.speed:.3f} m/s, stride {gait.stride_length:.3f} m in {gait.stride_time:.3f} s."
     )
     for line in lines:
-        screen.print(line, markup=False, soft_wrap=True)
+        _say(screen, line)
 
 
 def _pictures(screen: Console, gait: Gait, folder: Path) -> list[str]:
@@ -105,10 +161,12 @@ def _pictures(screen: Console, gait: Gait, folder: Path) -> list[str]:
     return [f"{FIGURES_FOLDER}/", REPLAY_FILE]
 
 
-def _warn_of_old_pictures(screen: Console, folder: Path) -> None:
-    old = [name for name in (FIGURES_FOLDER, REPLAY_FILE) if (folder / name).exists()]
+def _warn_of_old(screen: Console, folder: Path, *names: str) -> None:
+    old = [name for name in names if (folder / name).exists()]
     if old:
-        screen.print(
-            f"Note: {' and '.join(old)} in {folder} show an earlier gait.", markup=False,
-            soft_wrap=True,
-        )  # fmt: skip
+        verb = "is" if len(old) == 1 else "are"
+        _say(screen, f"Note: {' and '.join(old)} in {folder} {verb} of an earlier walk.")
+
+
+def _say(screen: Console, text: str) -> None:
+    screen.print(text, markup=False, soft_wrap=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from drakegait.errors import BadFile
 from drakegait.measured.column_map import axes_matrix
-from drakegait.measured.force_records import THRESHOLD, ForceRecord, make_record
+from drakegait.measured.force_records import THRESHOLD, ForceRecord, check_sides, make_record
 from drakegait.measured.notes import Notes
 from drakegait.measured.time_axis import runs
 
@@ -30,14 +30,8 @@ def read_c3d(
     Raises:
         BadFile: ezc3d is missing, or it cannot read the file, or there is no loaded plate.
     """
+    file = open_c3d(path)
     try:
-        import ezc3d
-    except ImportError:
-        raise BadFile(path, "needs the package ezc3d to be read: pip install ezc3d.") from None
-    if not Path(path).is_file():
-        raise BadFile(path, "does not exist.")
-    try:
-        file = ezc3d.c3d(str(path), extract_forceplat_data=True)
         plates = file["data"]["platform"]
         parameters = file["parameters"]
         analog = float(parameters["ANALOG"]["RATE"]["value"][0])
@@ -48,6 +42,8 @@ def read_c3d(
         raise BadFile(path, f"cannot be read as C3D with force plates ({reason}).") from None
     if not plates:
         raise BadFile(path, "holds no force plates (FORCE_PLATFORM), only markers or signals.")
+    plain = [f"plate {number}" for number in range(1, len(plates) + 1)]
+    check_sides(sides, [*plain, *(name.removeprefix("plate ") for name in plain)], plain)
     rate = analog if analog > 0.0 else frames
     begins = first / frames if frames > 0.0 else 0.0
     raw = []
@@ -77,6 +73,25 @@ def read_c3d(
     if not records:
         raise BadFile(path, f"has {len(raw)} force plates, but none carries {THRESHOLD:g} N.")
     return records
+
+
+def open_c3d(path: str | Path):
+    """A C3D file as ezc3d gives it, with its force plates computed.
+
+    Raises:
+        BadFile: ezc3d or the file is missing, or it cannot be read.
+    """
+    try:
+        import ezc3d
+    except ImportError:
+        raise BadFile(path, "needs the package ezc3d to be read: pip install ezc3d.") from None
+    if not Path(path).is_file():
+        raise BadFile(path, "does not exist.")
+    try:
+        return ezc3d.c3d(str(path), extract_forceplat_data=True)
+    except Exception as error:  # noqa: BLE001 - ezc3d raises what its C++ throws
+        reason = str(error).splitlines()[0] if str(error) else "damaged"
+        raise BadFile(path, f"cannot be read as C3D ({reason}).") from None
 
 
 def _find_axes(raw, notes: Notes, path: str | Path) -> np.ndarray:

@@ -11,6 +11,8 @@ TOML (or JSON with the same structure):
     hip_flexion_r = "RHip_X"
     knee_angle_r = { column = "RKnee_X", factor = -1.0 }
     ground_force_r_vx = "Fx1"
+    [markers]                               # of a C3D file: name in Plug-in Gait = theirs
+    RASI = "R.ASIS"
     [sides]                                 # foot on a plate whose name does not say it
     ground_force_1_ = "r"
 """
@@ -29,7 +31,7 @@ import numpy as np
 from drakegait.errors import BadFile, InvalidInput, UnknownName
 from drakegait.measured.table import read_text
 
-_KEYS = ("angle_unit", "axes", "columns", "sides")
+_KEYS = ("angle_unit", "axes", "columns", "markers", "sides")
 _AXES = ("x", "y", "z", "-x", "-y", "-z")
 
 
@@ -42,12 +44,14 @@ class ColumnMap:
         degrees: whether angles are in degrees; None if not said.
         axes: forward and up axis of the file's positions and forces; None if not said.
         sides: foot by group of force columns.
+        markers: label in a C3D file by the name of Plug-in Gait.
     """
 
     columns: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     degrees: bool | None = None
     axes: tuple[str, str] | None = None
     sides: Mapping[str, str] = field(default_factory=dict)
+    markers: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_map(path: str | Path) -> ColumnMap:
@@ -77,6 +81,7 @@ def read_map(path: str | Path) -> ColumnMap:
         degrees=None if unit is None else unit == "deg",
         axes=_axes(plain.get("axes")),
         sides={name: _side(name, value) for name, value in plain.get("sides", {}).items()},
+        markers={name: _label(name, value) for name, value in plain.get("markers", {}).items()},
     )
 
 
@@ -104,6 +109,12 @@ def _column(name: str, value: Any) -> tuple[str, float]:
     ) or factor == 0:  # fmt: skip
         raise InvalidInput(f"columns.{name}", value, allowed)
     return value["column"], float(factor)
+
+
+def _label(name: str, value: Any) -> str:
+    if not isinstance(value, str) or not value.strip():
+        raise InvalidInput(f"markers.{name}", value, "the label of a marker in the file")
+    return value
 
 
 def _axes(plain: Any) -> tuple[str, str] | None:

@@ -11,6 +11,7 @@ from drakegait.measured.body_angles import NAMES
 from drakegait.measured.column_map import ColumnMap, read_map
 from drakegait.measured.csv_columns import read_csv_table
 from drakegait.measured.force_records import ForceRecord, is_force_column, read_forces
+from drakegait.measured.markers import MARKERS
 from drakegait.measured.notes import Notes
 from drakegait.measured.opensim_file import read_opensim
 from drakegait.measured.table import Table
@@ -18,17 +19,18 @@ from drakegait.measured.table import Table
 OPENSIM, CSV, C3D = (".mot", ".sto"), (".csv", ".txt", ".tsv"), (".c3d",)
 
 
-def read_motion_file(path: str | Path, columns: str | Path | None, notes: Notes) -> Table:
-    """The table of a motion file.
+def read_motion_file(
+    path: str | Path, columns: str | Path | None, height: float, notes: Notes
+) -> Table:
+    """The table of a motion file; of a C3D file, what its markers say for a body of `height` [m].
 
     Raises:
-        BadFile: of a kind that holds no joint angles.
+        BadFile: of a kind that holds no motion.
     """
-    suffix = Path(path).suffix.lower()
-    if suffix in C3D:
-        raise BadFile(path, "holds markers, not joint angles: run inverse kinematics on it first "
-                      "(OpenSim or your laboratory's software) and give its .mot or .csv file as "
-                      "the motion; the C3D file itself serves as the file of forces.")  # fmt: skip
+    if Path(path).suffix.lower() in C3D:
+        from drakegait.measured.c3d_markers import read_c3d_motion
+
+        return read_c3d_motion(path, _map(columns), height=height, notes=notes)
     return _table(path, _map(columns), NAMES.__contains__, notes)
 
 
@@ -57,6 +59,9 @@ def _map(columns: str | Path | None) -> ColumnMap:
     for name in found.columns:
         if name not in (*NAMES, "time") and not is_force_column(name):
             raise UnknownName("column of the map", name, (*NAMES, "time", "..._vx", "..._px"))
+    for name in found.markers:
+        if name not in MARKERS:
+            raise UnknownName("marker of the map", name, MARKERS)
     return found
 
 

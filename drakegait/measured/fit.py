@@ -3,14 +3,16 @@
 Unknown are the coefficients of periodic quintic splines through all coordinates, and the footprints
 p_g of eq. (5). Least squares over equidistant instants k of one stride:
 
-    angles       (q_k - measured_k) / 3 deg,   (q''_k - measured''_k) / (3 deg (8 pi)^2)
+    angles       (q_k - measured_k) / 3 deg,   (q''_k - measured''_k) / (3 deg (8 pi)^2),
+                 of the trunk the latter / (0.3 deg (8 pi)^2)
     translations (q_k - measured_k) / 20 mm, where the hips' path was measured
     contacts     (point - footprint) / 1.5 mm, heading / 0.5 deg, in the phases of docs/formulation.md 6.1
     clearance    min(0, height) / 1.5 mm of points that do not stand
     forces       (m (a_com + g) - measured force) / 0.05 m g, where both feet's forces were measured
 
 The weights say what is believed: contacts to a millimetre, as shoes do not sink; angles to a few
-degrees, the error of skin markers (Leardini et al. 2005).
+degrees, the error of skin markers (Leardini et al. 2005). The trunk, two thirds of the body, may not
+twitch: 0.3 degrees four times a stride already need some 15 N m, which legs would have to bear.
 """  # noqa: E501
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from drakegait.measured.levenberg_marquardt import minimise
 from drakegait.reference.plausibility import GRAVITY
 from drakegait.transcription.foot_placement import FootPlacement
 from drakegait.transcription.splines import PeriodicQuintic
-from drakegait.walker.coordinates import rotations
+from drakegait.walker.coordinates import names, rotations
 from drakegait.walker.feet import (
     NUM_ROWS,
     VERTICAL_ROWS,
@@ -42,6 +44,7 @@ NODES = 25
 _ANGLE, _TRANSLATION, _POINT, _HEADING = np.radians(3.0), 0.02, 0.0015, np.radians(0.5)
 _FORCE = 0.05  # of body weight
 _BEND = (8.0 * np.pi) ** 2  # second derivative of a fourth harmonic of unit amplitude
+_TRUNK_BEND = 0.1  # of that, for the rotations of the trunk
 _PLACE = np.array([0.03, 0.03, np.radians(5.0), np.radians(5.0), 0.03])
 
 
@@ -101,6 +104,8 @@ class StrideFit:
         self._feet = FootGeometry(heel=float(neutral[0, 0]), toe=float(neutral[1, 0]))
         self._length = target.placement.stride_length
         self._angles = rotations(skeleton.kind)
+        trunk = np.array([name.startswith("hat_") for name in names(skeleton.kind)])
+        self._bend_share = _BEND * np.where(trunk & self._angles, _TRUNK_BEND, 1.0)
         self._measured = self.spline.fit(self.tau, target.coordinates.T)
         self._wave = _second_derivative(INSTANTS, (NODES - 1) // 2)
 
@@ -243,7 +248,7 @@ class StrideFit:
         errors, heights = self._contacts(x)
         parts = [
             (self._basis @ away.T) / scale,
-            (self._bend @ away.T) / (scale * _BEND),
+            (self._bend @ away.T) / (scale * self._bend_share),
             np.where(self.active, errors / contact, 0.0),
             np.where(self.active[:, VERTICAL_ROWS], 0.0, np.minimum(heights, 0.0) / _POINT),
         ]
@@ -265,7 +270,7 @@ class StrideFit:
         weight, deep = (self.active / contact)[..., None], (sunk / _POINT)[..., None]
         blocks = [
             np.einsum("ij,km->kijm", eye, self._basis),
-            np.einsum("ij,km->kijm", eye / _BEND, self._bend),
+            np.einsum("ij,km->kijm", eye / self._bend_share, self._bend),
             np.einsum("kri,km->krim", by_q * weight, self._basis),
             np.einsum("kri,km->krim", by_q[:, VERTICAL_ROWS] * deep, self._basis),
         ]

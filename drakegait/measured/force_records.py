@@ -8,13 +8,13 @@ of the motion file: X forward, Y up, Z to the right.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from drakegait.errors import BadFile
+from drakegait.errors import BadFile, UnknownName
 from drakegait.measured.notes import Notes
 from drakegait.measured.table import Table
 from drakegait.measured.time_axis import Series, equidistant, in_order, low_pass, runs, without_gaps
@@ -156,8 +156,25 @@ def make_record(
     return ForceRecord(label=label, series=series, load=load, pressure=pressure, side=side)
 
 
+def check_sides(sides: Mapping[str, str], known: Sequence[str], shown: Sequence[str]) -> None:
+    """Refuse a foot on a plate that the file does not have.
+
+    Args:
+        known: every name under which a plate can be meant.
+        shown: one name for each, for the message.
+
+    Raises:
+        UnknownName: naming it.
+    """
+    for plate in sides:
+        if plate not in known:
+            raise UnknownName("plate of a side", plate, shown)
+
+
 def _sides(heads: list[str], table: Table) -> dict[str, str | None]:
     """The foot that the name of each group claims."""
+    plates = [head.strip("_") for head in heads]
+    check_sides(table.sides, [*heads, *plates], plates)
     sides: dict[str, str | None] = {}
     for head in heads:
         named = table.sides.get(head) or table.sides.get(head.strip("_"))

@@ -13,6 +13,10 @@ from drakegait.walker.coordinates import coordinates, to_anatomical
 from drakegait.walker.feet import NUM_PHASES, PHASE_NAMES
 
 _POINT_ROWS = {"heel_r": (0, 1, 2), "toe_r": (3, 4, 5), "heel_l": (7, 8, 9), "toe_l": (10, 11, 12)}
+_WORDS = {
+    "hat_x": "hips, forward", "hat_y": "hips, to the left", "hat_z": "hips, height",
+    "hat_tilt": "trunk tilt", "hat_list": "trunk list", "hat_rotation": "trunk rotation",
+}  # fmt: skip
 _GOOD_CONTACT = 0.003  # [m] rms
 _FAR_ANGLE = 6.0  # [deg] rms change by the fit
 
@@ -53,6 +57,12 @@ class Quality:
         values["penetration"] = tuple(values["penetration"])
         values["warnings"] = tuple(values["warnings"])
         return cls(**values)
+
+
+def spoken(name: str) -> str:
+    """A coordinate or point in words: `knee_flexion_r` is "right knee flexion"."""
+    side = {"_r": "right ", "_l": "left "}.get(name[-2:], "")
+    return _WORDS.get(name) or side + (name[:-2] if side else name).replace("_", " ")
 
 
 def contact_table(fit: StrideFit, before: FittedStride, after: FittedStride) -> list[dict]:
@@ -122,20 +132,21 @@ def judge(contacts: list[dict], changes: list[dict]) -> list[str]:
     worst = max(contacts, key=lambda row: row["after_mm"])
     if worst["after_mm"] > 1e3 * _GOOD_CONTACT:
         found.append(
-            f"After the fit {worst['point']} is still {worst['after_mm']:.1f} mm (rms) off its "
-            f"footprint in phase {worst['phase']}, {worst['name']}."
+            f"After the fit the {spoken(worst['point'])} is still {worst['after_mm']:.1f} mm (rms) "
+            f"off its footprint in phase {worst['phase']}, {worst['name']}."
         )
     angles = [row for row in changes if row["unit"] == "deg"]
     for row in angles:
         size = float(np.hypot(row["rms"], row["mean"]))
         if size > _FAR_ANGLE:
             found.append(
-                f"{row['coordinate']} had to be changed by {size:.1f} degrees (rms) to put the "
-                "feet on the ground: its offset or the phases are doubtful."
+                f"{spoken(row['coordinate']).capitalize()} had to be changed by {size:.1f} "
+                "degrees (rms) to put the feet on the ground: its offset or the phases are "
+                "doubtful."
             )
     open_rows = [row for row in angles if abs(row["gap"]) > 5.0]
     if open_rows:
-        text = ", ".join(f"{row['coordinate']} {row['gap']:+.1f}" for row in open_rows)
+        text = ", ".join(f"{spoken(row['coordinate'])} {row['gap']:+.1f}" for row in open_rows)
         found.append(f"The stride does not end as it began (degrees): {text}; it was closed.")
     return found
 

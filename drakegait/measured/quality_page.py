@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drakegait.errors import BadFile
+from drakegait.measured.quality import spoken
 from drakegait.walker.coordinates import SPATIAL, to_anatomical
 from drakegait.walker.feet import NUM_PHASES
 
@@ -26,6 +27,23 @@ _PANELS = (
     ("hip_rotation_r", "hip_rotation_l"), ("hat_y",),
     ("knee_flexion_r", "knee_flexion_l"), ("ankle_dorsiflexion_r", "ankle_dorsiflexion_l"),
 )  # fmt: skip
+_TITLES = {
+    "hat_tilt": "Trunk tilt [°], + forward",
+    "hat_list": "Trunk list [°], + to the right",
+    "hat_rotation": "Trunk rotation [°], + to the left",
+    "hat_z": "Height of the hips [cm]",
+    "hat_y": "Hips sideways [cm], + left",
+    "hip_flexion_r": "Hip flexion [°], − extension",
+    "hip_adduction_r": "Hip adduction [°], − abduction",
+    "hip_rotation_r": "Hip rotation [°], + internal",
+    "knee_flexion_r": "Knee flexion [°], − extension",
+    "ankle_dorsiflexion_r": "Ankle dorsiflexion [°], − plantar",
+}
+_FORCE_TITLES = (
+    "Fore-aft [body weights], + forward", "Sideways [body weights], + to the left",
+    "Vertical [body weights]",
+)  # fmt: skip
+_CYCLE = "% of the stride from right heel strike"
 
 
 def write_page(walk: ImportedWalk, path: str | Path) -> None:
@@ -50,7 +68,7 @@ def write_page(walk: ImportedWalk, path: str | Path) -> None:
         warnings=quality.warnings, facts=quality.facts, strides=quality.strides,
         angles=Markup(_svg(coordinate_figure(walk))), forces=Markup(_svg(force_figure(walk))),
         force_rows=quality.forces, penetration=quality.penetration, contacts=quality.contacts,
-        changes=quality.changes,
+        changes=quality.changes, spoken=spoken,
     )  # fmt: skip
     beside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
@@ -64,7 +82,7 @@ def write_page(walk: ImportedWalk, path: str | Path) -> None:
 
 def coordinate_figure(walk: ImportedWalk) -> Figure:
     """Measured and fitted coordinates over the stride, in anatomical signs."""
-    figure, panels = _panels(3, 4, (11.0, 6.4))
+    figure, panels = _panels(3, 4, (11.0, 7.0))
     tau = np.arange(len(walk.target.coordinates)) / len(walk.target.coordinates)
     fitted = to_anatomical("spatial", walk.reference.coordinate_values(tau))
     measured = to_anatomical("spatial", walk.target.coordinates)
@@ -76,9 +94,7 @@ def coordinate_figure(walk: ImportedWalk) -> Figure:
             colour = {"_r": _RIGHT, "_l": _LEFT}.get(name[-2:], _BODY)
             axes.plot(100 * tau, factor * measured[:, k], color=_MEASURED, lw=3.0)
             axes.plot(100 * tau, factor * fitted[:, k], color=colour, lw=1.3)
-        unit = "deg" if SPATIAL[where[names[0]]].is_rotation else "cm"
-        title = names[0].removesuffix("_r").replace("_", " ")
-        axes.set_title(f"{title} [{unit}]")
+        axes.set_title(_TITLES[names[0]])
         _phases(axes, walk)
     for axes in panels[len(_PANELS) :]:
         axes.axis("off")
@@ -88,20 +104,21 @@ def coordinate_figure(walk: ImportedWalk) -> Figure:
 
 def force_figure(walk: ImportedWalk) -> Figure:
     """Measured forces, and what the fitted motion needs."""
-    figure, panels = _panels(1, 3, (11.0, 2.9))
+    figure, panels = _panels(1, 3, (11.0, 3.1))
     tau = np.linspace(0.0, 1.0, 201)
     weight = walk.subject.mass * 9.81
     forces = walk.reference.ground_reactions(tau) / weight
     needed = walk.needed_force / weight
     instants = np.arange(len(needed)) / len(needed)
-    for k, (axes, name) in enumerate(zip(panels, ("fore-aft", "lateral", "vertical"), strict=True)):
+    for k, (axes, name) in enumerate(zip(panels, _FORCE_TITLES, strict=True)):
         axes.plot(100 * tau, forces[:, :, k].sum(axis=1), color=_MEASURED, lw=3.0)
         axes.plot(100 * tau, forces[:, 0, k], color=_RIGHT, lw=1.3)
         axes.plot(100 * tau, forces[:, 1, k], color=_LEFT, lw=1.3)
         axes.plot(100 * instants, needed[:, k], color="#111111", lw=1.0, ls="--")
-        axes.set_title(f"{name} [body weights]")
+        axes.set_title(name)
         _phases(axes, walk)
-    _legend(figure, {"right": _RIGHT, "left": _LEFT, "sum": _MEASURED, "m (a + g)": "#111111"})
+    _legend(figure, {"right": _RIGHT, "left": _LEFT, "both feet": _MEASURED,
+                     "needed by the motion": "#111111"})  # fmt: skip
     return figure
 
 
@@ -123,6 +140,7 @@ def _phases(axes: Axes, walk: ImportedWalk) -> None:
                   color="#7a8796", ha="center", va="top")  # fmt: skip
     axes.set_xlim(0.0, 100.0)
     axes.set_xticks(range(0, 101, 25))
+    axes.set_xlabel(_CYCLE, fontsize=7, labelpad=1)
 
 
 def _legend(figure: Figure, colours: dict[str, str]) -> None:
@@ -138,7 +156,7 @@ def _svg(figure: Figure) -> str:
 
     look = {
         "svg.fonttype": "none", "svg.hashsalt": "drakegait", "font.size": 8.0,
-        "font.family": "sans-serif", "axes.titlesize": 8.5,
+        "font.family": "sans-serif", "axes.titlesize": 7.5,
     }  # fmt: skip
     with rc_context(look):
         text = io.StringIO()

@@ -40,8 +40,8 @@ def stance_forces(
         mirrored = not whole[side]
         candidates = whole["l" if side == "r" else "r"] if mirrored else whole[side]
         if not candidates:
-            raise BadFile("recording", "holds no stance of one foot, from heel strike to toe off, "
-                          "whose force was recorded completely.")  # fmt: skip
+            raise BadFile("the force file", "holds no stance of one foot, from heel strike to toe "
+                          "off, whose force was recorded completely.")  # fmt: skip
         instant = stride.right_strike + strike * stride.duration
         contact = min(candidates, key=lambda c: _distance(c, instant, stride.duration))
         if mirrored:

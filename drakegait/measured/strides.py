@@ -91,8 +91,9 @@ def choose_stride(
                 "closed and turned to begin at right heel strike."
             )
     if not strides:
-        raise BadFile("recording", "holds no whole stride, from one heel strike to the next of the "
-                      "same foot with motion and without long gaps.")  # fmt: skip
+        raise BadFile(f"the motion from {posture.time[0]:.2f} to {posture.time[-1]:.2f} s",
+                      "holds no whole stride, from one heel strike to the next of the same foot "
+                      "without long gaps.")  # fmt: skip
     if number is None:
         return min(strides, key=lambda stride: stride.score), strides
     if not 1 <= number <= len(strides):

@@ -58,12 +58,12 @@ def import_walk(
     docs/your_own_data.md says what is done to the data.
 
     Args:
-        motion: joint angles, OpenSim `.mot` or `.sto`, or CSV.
+        motion: joint angles, OpenSim `.mot` or `.sto`, or CSV; or markers, C3D.
         forces: ground forces, OpenSim `.mot` or `.sto`, CSV, or C3D.
         height, mass: of the person [m, kg].
         treadmill_speed: of the belt [m/s]; default: found from the standing feet.
         stride: number of the stride to take, from 1; default the best.
-        columns: TOML or JSON file that says which column is what, for CSV.
+        columns: TOML or JSON file that says which column or marker is what, for CSV and C3D.
         knee: `"auto"`, `"flexion-positive"` or `"flexion-negative"`.
         sides: `"r"` or `"l"` by name of a force plate, where names do not say the foot.
         motion_cutoff, force_cutoff: of the low-pass filters [Hz].
@@ -76,7 +76,7 @@ def import_walk(
         allowed = f"{SPEEDS[0]:g} to {SPEEDS[1]:g} [m/s]"
         raise InvalidInput("treadmill speed", treadmill_speed, allowed)
     skeleton = Skeleton.load("spatial", subject)
-    table = read_motion_file(motion, columns, notes)
+    table = read_motion_file(motion, columns, subject.height, notes)
     body = read_body_angles(
         table, height=subject.height, knee=knee, cutoff=motion_cutoff, notes=notes
     )
@@ -85,7 +85,7 @@ def import_walk(
     records = turned(records, posture.heading)
     name = Path(forces).name
     if not any(_overlaps(record.series.time, posture.time) for record in records):
-        raise BadFile(forces, "and the motion share no time: "
+        raise BadFile(forces, "shares no time with the motion: "
                       f"{records[0].series.time[0]:.2f} to {records[0].series.time[-1]:.2f} s and "
                       f"{posture.time[0]:.2f} to {posture.time[-1]:.2f} s.")  # fmt: skip
     contacts = find_contacts(posture, records, notes, name)
@@ -116,7 +116,7 @@ def import_walk(
     )  # fmt: skip
     fit = StrideFit(skeleton, target)
     before, after = fit.solve()
-    title = f"{Path(motion).name}, {chosen.right_strike:.2f} s"
+    title = f"{Path(motion).name}, stride from {chosen.right_strike:.2f} s"
     reference = reference_of_fit(title, fit, after, measured_forces)
     contacts_table = contact_table(fit, before, after)
     changes = change_table(fit, after, gaps)

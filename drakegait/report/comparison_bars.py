@@ -84,8 +84,7 @@ def _changes(axes: Axes, by_side: dict[str, np.ndarray], labels: Sequence[str]) 
             colours.append(style.SIDE_COLOURS[side])
             alphas.append(1.0 - 0.6 * (number - 1) / max(1, others))
     _bars(axes, np.array(values).T, colours, alpha=alphas)
-    title = f"Change to {labels[0]} [J/m]"
-    axes.set_title(title if len(title) < 34 else "Change to the first [J/m]")
+    axes.set_title("Change [J/m]")
     if others > 1:
         axes.set_title("Change to the first [J/m],\npaler for later gaits")
     return [

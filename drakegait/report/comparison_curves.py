@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.report.curves import GaitCurves
-from drakegait.report.joint_moments import moment, power
+from drakegait.report.joint_moments import JOINT_AXES, moment, power
 from drakegait.walker import coordinates
 
 BAND_SHARE = 0.25
@@ -17,6 +17,11 @@ BAND_MEANING = (
     "Grey band: the reference stride ± a quarter of σ, eq. (10) of the model: the root mean square "
     "deviation of that curve from its own mean over the stride. It shows how far is far in the "
     "terms in which the walker is held to the reference. It is not the spread among healthy people."
+)
+LINE_MEANING = (
+    "Grey line: moments and powers of the reference stride, by inverse dynamics of its motion and "
+    "ground forces through the model without changes. It is computed, not measured; it steps where "
+    "a contact begins or ends."
 )
 LEAST_LOAD = 0.01
 """Share of body weight below which a foot in the air has no band."""
@@ -36,6 +41,8 @@ class Quantity:
         reference: of (curves, side, tau) -> its reference value (num,) and sigma in the same unit,
             at fractions tau of the reference stride; None without one.
         sided: whether each leg has one.
+        derived: the same as `reference`, for what the reference does not hold but inverse dynamics
+            of it tells: (num,), a line without a band.
     """
 
     name: str
@@ -48,6 +55,7 @@ class Quantity:
         None
     )
     sided: bool = True
+    derived: Callable[[GaitCurves, str, np.ndarray], np.ndarray | None] | None = None
 
     def own(self, curves: GaitCurves, side: str) -> tuple[np.ndarray, np.ndarray] | None:
         """Percent of the side's own cycle and values, ready to draw; None if there is none."""
@@ -56,14 +64,22 @@ class Quantity:
 
     def band(self, curves: GaitCurves, side: str) -> tuple[np.ndarray, ...] | None:
         """Percent of the side's cycle in the reference, lower and upper edge of its band (101,)."""
-        if self.reference is None:
-            return None
-        tau = 0.01 * _PERCENT + reference_heel_strike(curves, side if self.sided else "right")
-        found = self.reference(curves, side, tau)
+        found = self._read(self.reference, curves, side)
         if found is None:
             return None
         mean, sigma = found
         return _PERCENT, mean - BAND_SHARE * sigma, mean + BAND_SHARE * sigma
+
+    def line(self, curves: GaitCurves, side: str) -> tuple[np.ndarray, np.ndarray] | None:
+        """Percent of the side's cycle in the reference and what inverse dynamics makes of it."""
+        found = self._read(self.derived, curves, side)
+        return None if found is None else (_PERCENT, found)
+
+    def _read(self, read: Callable | None, curves: GaitCurves, side: str):
+        if read is None:
+            return None
+        start = reference_heel_strike(curves, side if self.sided else "right")
+        return read(curves, side, 0.01 * _PERCENT + start)
 
 
 def reference_heel_strike(curves: GaitCurves, side: str) -> float:
@@ -106,6 +122,29 @@ def _reference_force(axis: str) -> Callable:
     return read
 
 
+def _reference_moment(name: str) -> Callable:
+    def read(curves: GaitCurves, side: str, tau: np.ndarray):
+        dynamics = curves.reference_dynamics
+        if dynamics is None or f"{name}_{side[0]}" not in dynamics.joints:
+            return None
+        column = dynamics.joints.index(f"{name}_{side[0]}")
+        return dynamics.at(tau, dynamics.moments[:, column]) / curves.mass
+
+    return read
+
+
+def _reference_power(joint: str) -> Callable:
+    def read(curves: GaitCurves, side: str, tau: np.ndarray):
+        dynamics = curves.reference_dynamics
+        if dynamics is None:
+            return None
+        axes = [f"{name}_{side[0]}" for name in JOINT_AXES[joint]]
+        columns = [dynamics.joints.index(name) for name in axes if name in dynamics.joints]
+        return dynamics.at(tau, dynamics.powers[:, columns].sum(axis=1)) / curves.mass
+
+    return read
+
+
 def _angle(name: str, title: str, up: str, down: str) -> Quantity:
     sided = not name.startswith("hat_")
 
@@ -119,13 +158,15 @@ def _moment(name: str, title: str, up: str, down: str) -> Quantity:
     def values(curves: GaitCurves, side: str) -> np.ndarray | None:
         return moment(curves, f"{name}_{side[0]}")
 
-    return Quantity(f"{name}_moment", title, "N m/kg", up, down, values)
+    return Quantity(
+        f"{name}_moment", title, "N m/kg", up, down, values, derived=_reference_moment(name)
+    )
 
 
 def _power(joint: str) -> Quantity:
     return Quantity(
         f"{joint.lower()}_power", f"{joint} power", "W/kg", "generated", "absorbed",
-        lambda curves, side: power(curves, joint, side),
+        lambda curves, side: power(curves, joint, side), derived=_reference_power(joint),
     )  # fmt: skip
 
 

@@ -20,6 +20,7 @@ _LEAST_RANGE = {"°": 8.0, "% BW": 10.0, "N m/kg": 0.3, "W/kg": 0.5}
 _BURST_COLOUR = "#e3e9dc"
 _USUAL = "usual activity (electromyography)"
 _LEGEND = ("reference ± σ/4", "toe off")
+_LINE = "reference, inverse dynamics"
 
 
 def cycle_figure(
@@ -30,14 +31,14 @@ def cycle_figure(
     Args:
         items: quantities of legs that the walkers have.
         all_curves: the gaits, the first with its reference.
-        band: whether to draw the reference band where there is one.
+        band: whether to draw the reference where there is one, a band or a line.
     """
     labels = [curves.label for curves in all_curves]
     figure, grid = look.new_figure(
-        len(items), 2, 1.22, left=0.62, gap=0.42, top=look.legend_height(labels, _LEGEND),
+        len(items), 2, 1.22, left=0.62, gap=0.42, top=look.legend_height(labels, [*_LEGEND, _LINE]),
         sharey="row",
     )  # fmt: skip
-    drawn = False
+    drawn: set[str] = set()
     for row, item in zip(grid, items, strict=True):
         for axes, side in zip(row, SIDES, strict=True):
             drawn |= draw_panel(axes, item, all_curves, side, band)
@@ -49,7 +50,7 @@ def cycle_figure(
             axes.tick_params(labelleft=True)
     for axes in grid[-1]:
         axes.set_xlabel("% of the leg's gait cycle", labelpad=2)
-    look.line_legend(figure, labels, [*_band_handle(drawn), look.toe_off_handle()])
+    look.line_legend(figure, labels, [*_reference_handles(drawn), look.toe_off_handle()])
     return figure
 
 
@@ -61,7 +62,7 @@ def trunk_figure(all_curves: Sequence[GaitCurves], band: bool = True) -> Figure:
     # Titles have two lines.
     top = look.legend_height(labels, _LEGEND) + 0.14
     figure, grid = look.new_figure(1, columns, 1.3, left=0.42, between=0.36, top=top)
-    drawn = False
+    drawn: set[str] = set()
     for axes, item in zip(grid[0], items, strict=False):
         drawn |= draw_panel(axes, item, all_curves, "right", band)
         axes.set_title(f"{item.title} [°]\n+ {item.up} / − {item.down}")
@@ -70,7 +71,7 @@ def trunk_figure(all_curves: Sequence[GaitCurves], band: bool = True) -> Figure:
         axes.set_xlabel("% of the right leg's gait cycle", labelpad=2)
     for axes in grid[0][len(items) :]:
         axes.remove()
-    look.line_legend(figure, labels, [*_band_handle(drawn), look.toe_off_handle()])
+    look.line_legend(figure, labels, [*_reference_handles(drawn), look.toe_off_handle()])
     return figure
 
 
@@ -118,11 +119,17 @@ def excitation_figure(all_curves: Sequence[GaitCurves]) -> Figure:
 
 def draw_panel(
     axes: Axes, item: Quantity, all_curves: Sequence[GaitCurves], side: str, band: bool
-) -> bool:
-    """The curves of one side, toe off and the band; whether there is a band."""
+) -> set[str]:
+    """The curves of one side, toe off and the reference; what of that there is: band, line."""
+    drawn = set()
     edges = item.band(all_curves[0], side) if band else None
     if edges is not None:
         axes.fill_between(*edges, color=look.BAND_COLOUR, lw=0, zorder=-1, gid="reference band")
+        drawn.add("band")
+    line = item.line(all_curves[0], side) if band else None
+    if line is not None:
+        axes.plot(*line, color=look.LINE_COLOUR, lw=2.2, zorder=-1, gid="reference line")
+        drawn.add("line")
     for number, curves in enumerate(all_curves):
         found = item.own(curves, side)
         if found is None:
@@ -132,13 +139,19 @@ def draw_panel(
         axes.axvline(curves.toe_off(side), color=colour, lw=0.6, ls=(0, (2, 2)), zorder=0)
     axes.set_xlim(0.0, 100.0)
     axes.set_xticks(range(0, 101, 20))
-    return edges is not None
+    return drawn
 
 
-def _band_handle(drawn: bool) -> list:
+def _reference_handles(drawn: set[str]) -> list:
+    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    return [Patch(color=look.BAND_COLOUR, label=_LEGEND[0])] if drawn else []
+    handles: list = []
+    if "band" in drawn:
+        handles.append(Patch(color=look.BAND_COLOUR, label=_LEGEND[0]))
+    if "line" in drawn:
+        handles.append(Line2D([], [], color=look.LINE_COLOUR, lw=2.2, label=_LINE))
+    return handles
 
 
 def _name_side(axes: Axes, side: str) -> None:

@@ -71,6 +71,7 @@ def render(comparison: Comparison) -> str:
         tables={topic: shown(table) for topic, table in comparison.rows.items()},
         figures={name: Markup(svg) for name, svg in figures(comparison).items()},
         band=curves_of.BAND_MEANING if comparison.reference else "",
+        line=curves_of.LINE_MEANING if _has_line(comparison) else "",
         reference=_reference_words(base),
         replay=Markup(as_attribute(_replay(comparison))),
         version=drakegait.__version__,
@@ -155,6 +156,11 @@ def _reference_words(study) -> str:
     if study.reference is None:
         return f'embedded stride "{name}" of one adult, scaled to height and mass'
     return f'"{name}"'
+
+
+def _has_line(comparison: Comparison) -> bool:
+    forces = comparison.gaits[0].study.reference_walk.forces
+    return comparison.reference and forces is not None
 
 
 def _residual_share(report) -> str:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 GAIT_COLOURS = ("#222222", "#d55e00", "#009e73", "#0072b2", "#cc79a7", "#b58900")
 GAIT_DASHES = ("-", (0, (5, 1.6)), (0, (1.4, 1.2)), (0, (6, 1.5, 1.5, 1.5)), "-", (0, (3, 1)))
 BAND_COLOUR = "#d9d9d9"
+LINE_COLOUR = "#b5b5b5"
 WIDTH = 7.4
 """Width of all figures [inch]: that of the text on a sheet of A4."""
 _LETTERS, _HANDLE = 108, 8  # letters in a row of a legend, and as many as a handle is wide

@@ -184,6 +184,8 @@ def curve_frame(all_curves: Sequence[GaitCurves], labels: Sequence[str]) -> pd.D
                        "percent": np.arange(101)}  # fmt: skip
             for curves, label in zip(all_curves, labels, strict=True):
                 columns[label] = at_percent(item, curves, which)
+            line = item.line(all_curves[0], which)
+            columns["reference, inverse dynamics"] = np.nan if line is None else line[1]
             columns["band low"] = np.nan if band is None else band[1]
             columns["band high"] = np.nan if band is None else band[2]
             frames.append(pd.DataFrame(columns))

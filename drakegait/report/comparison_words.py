@@ -95,8 +95,15 @@ def incomparable(base: GaitStudy, other: GaitStudy) -> list[str]:
         found.append("one of them was forced to walk with equal sides, the other was free.")
     if base.tolerances != other.tolerances:
         found.append("different tolerances of the laws of motion.")
-    if base.interior_points != other.interior_points or base.multipliers != other.multipliers:
-        found.append("different control points or contact forces in the optimisation.")
+    alike = base.symmetric == other.symmetric and base.nodes == other.nodes
+    if alike and base.schedule != other.schedule:
+        counts = base.schedule.num_points, other.schedule.num_points
+        found.append(
+            f"the laws were enforced at different instants of the stride ({counts[0]} and "
+            f"{counts[1]} control points); small differences may come from that."
+        )
+    if base.multipliers != other.multipliers:
+        found.append("contact forces were found in different ways (lifted and projected).")
     if base.subject != other.subject:
         found.append("different height, mass or proportions of the body.")
     first, second = (study.reference_walk for study in (base, other))
@@ -159,7 +166,9 @@ def _cost(base: GaitNumbers, other: GaitNumbers, hindered: bool) -> list[str]:
     amount = f"{abs(share):.1f} % {'more' if change > 0 else 'less'} than {theirs:.0f} J/m"
     if abs(change) < 0.05:
         return [f"Cost of transport {mine:.0f} J/m, unchanged."]
-    text = f"It takes {mine:.0f} J/m ({per_mass:.2f} J/(kg m)), {amount}."
+    text = (
+        f"Walking takes {mine:.0f} J of metabolic energy per m ({per_mass:.2f} J/(kg m)), {amount}."
+    )
     if abs(share) < NOISE:
         return [
             f"{text} That is within the {NOISE:g} % that solves from different starts differ by."
@@ -224,7 +233,7 @@ def _sides(base: GaitNumbers, other: GaitNumbers) -> str:
         return "The symmetry of the legs does not change."
     before, after = row.values
     return (
-        f"Symmetry of the legs changes most in: {row.label[0].lower() + row.label[1:]}, index "
-        f"{number_text(before, 0, True)} % to {number_text(after, 0, True)} % "
+        f"Symmetry of the legs changes most in: {row.label[0].lower() + row.label[1:]}, "
+        f"symmetry index {number_text(before, 0, True)} % to {number_text(after, 0, True)} % "
         "(above 0: more on the right)."
     )

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from drakegait.gait import Gait
+    from drakegait.report.reference_dynamics import ReferenceDynamics
 
 SIDES = ("right", "left")
 _HEEL_STRIKE = {"right": 0, "left": 4}  # positions in feet.EVENT_NAMES
@@ -43,6 +44,13 @@ class GaitCurves:
     def data(self) -> xr.Dataset:
         """The sampled gait: anatomical signs, degrees and SI units."""
         return self.gait.sample(self.samples)
+
+    @cached_property
+    def reference_dynamics(self) -> ReferenceDynamics | None:
+        """Joint moments and powers of the reference stride; None if it has no ground forces."""
+        from drakegait.report.reference_dynamics import reference_dynamics
+
+        return reference_dynamics(self.gait.study)
 
     @cached_property
     def percent(self) -> np.ndarray:

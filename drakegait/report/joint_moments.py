@@ -21,7 +21,7 @@ _MOMENTS = {
     "hip_adduction": "Hip   + adductor / − abductor",
     "hip_rotation": "Hip   + internal / − external rotator",
 }
-_JOINTS = {
+JOINT_AXES = {
     "Hip": ("hip_flexion", "hip_adduction", "hip_rotation"),
     "Knee": ("knee_flexion",),
     "Ankle": ("ankle_dorsiflexion",),
@@ -50,7 +50,7 @@ def joint_moments(all_curves: Sequence[GaitCurves]) -> Figure:
             passive = moment(first, f"{name}_{side[0]}", passive_only=True)
             axes.plot(*first.own_cycle(side, passive), color=style.SIDE_COLOURS[side], lw=0.5)
         style.zero_line(axes)
-    for axes, joint in zip(grid[1], _JOINTS, strict=True):
+    for axes, joint in zip(grid[1], JOINT_AXES, strict=True):
         style.cycle_axes(axes, first, label=not spatial)
         axes.set_title(f"{joint} power [W/kg]   + generated / − absorbed")
         for side in SIDES:
@@ -70,7 +70,7 @@ def moment(curves: GaitCurves, name: str, passive_only: bool = False) -> np.ndar
 
 def power(curves: GaitCurves, joint: str, side: str) -> np.ndarray:
     """Power of muscles and passive structures at all axes of a joint (num_samples,) [W/kg]."""
-    parts = [curves.joint(f"{name}_{side[0]}", "joint_power") for name in _JOINTS[joint]]
+    parts = [curves.joint(f"{name}_{side[0]}", "joint_power") for name in JOINT_AXES[joint]]
     return sum(part for part in parts if part is not None) / curves.mass
 
 

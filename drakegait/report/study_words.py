@@ -17,7 +17,8 @@ SIDES = {"_r": "right", "_l": "left"}
 _SEGMENTS = {"hat": "trunk"}
 # Statements that have a sentence of their own below.
 _TOLD = {"subject", "added_masses", "strength", "disorders", "limits", "reference", "sdf", "nodes",
-         "speed", "model", "energy_weight", "deviation_weight", "planar_muscles"}  # fmt: skip
+         "speed", "model", "energy_weight", "deviation_weight", "planar_muscles",
+         "interior_points"}  # fmt: skip
 
 
 def spoken(name: str) -> str:
@@ -79,8 +80,8 @@ def who(study: GaitStudy) -> str:
 def differences(base: GaitStudy, other: GaitStudy) -> list[str]:
     """What distinguishes `other` from `base`, statement by statement; empty if nothing does.
 
-    What `other` has comes first, what only `base` has begins with "without", and everything that
-    is a number says both values.
+    Control points are no statement about a walker and left out. What `other` has comes first, what
+    only `base` has begins with "without", and everything that is a number says both values.
     """
     found: list[str] = []
     for phrases in (worn, strengths, disorders, limits):

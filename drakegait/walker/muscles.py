@@ -118,12 +118,12 @@ class MuscleSet:
         groups = tuple(row["abbreviation"] for row in sided)
 
         for name, entries in (changes or {}).items():
-            for i in _select(name, names, groups):
+            for i in select(name, names, groups):
                 for entry, value in entries.items():
                     sided[i][_table_column(entry)] = _positive(f"{entry} of {name}", value)
         factor = np.ones(len(names))
         for name, value in (strength or {}).items():
-            factor[_select(name, names, groups)] *= _strength(name, value)
+            factor[select(name, names, groups)] *= _strength(name, value)
 
         def column(header: str) -> np.ndarray:
             return np.array([float(row[header]) for row in sided])
@@ -234,7 +234,7 @@ def _read_table(name: str) -> list[dict[str, str]]:
     return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
 
 
-def _select(name: str, names: tuple[str, ...], groups: tuple[str, ...]) -> list[int]:
+def select(name: str, names: tuple[str, ...], groups: tuple[str, ...]) -> list[int]:
     """Positions of the muscle `name`, or of both muscles of the group `name`."""
     found = [i for i, full in enumerate(names) if name in (full, full[:-2], groups[i])]
     if not found:

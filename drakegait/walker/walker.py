@@ -71,7 +71,7 @@ class Walker:
         natural = MuscleSet.load(
             kind, subject, planar_set, strength=strength or {}, changes=muscle_changes
         )
-        check_walker(disorders, natural)
+        check_walker(disorders, natural, (*(strength or ()), *(muscle_changes or ())))
         muscles = natural
         for item in sorted(disorders, key=lambda item: len(item.bare_joints())):  # removal last
             muscles = item.changed_muscles(muscles)

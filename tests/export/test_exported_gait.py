@@ -12,6 +12,7 @@ from drakegait.errors import BadFile, InvalidInput
 from drakegait.export import export_csv, export_opensim, export_sdf
 from drakegait.export.bodies import TO_OPENSIM
 from drakegait.loads import loads_along
+from drakegait.program.variants import Variants
 from drakegait.reference.csv_file import read_csv
 from drakegait.sampling import LOADED
 from drakegait.study import GaitStudy
@@ -34,14 +35,19 @@ def all_loads(gait, tau):
     return motion, loads_along(gait.study.walker, motion, gait.phase_of(tau))
 
 
-@pytest.mark.parametrize("model", ["planar", "spatial"])
-def test_inverse_dynamics_of_opensim_finds_our_joint_moments(model, tmp_path, ask_opensim):
+@pytest.mark.parametrize(
+    ("model", "statements"),
+    [("planar", {}), ("spatial", {}), ("spatial", {"variants": Variants(sequence="123")})],
+)
+def test_inverse_dynamics_of_opensim_finds_our_joint_moments(
+    model, statements, tmp_path, ask_opensim
+):
     """From files alone, with forces on the feet; OpenSim differentiates the motion itself.
 
     Its result is all that moves the joints: muscles, passive structures and the residual of our
     equations. The middle of three strides is compared: at the ends its splines are free.
     """
-    gait = reference_gait(model)
+    gait = reference_gait(model, **statements)
     written = export_opensim(gait, tmp_path, num=NUM, strides=3)
     tables = [path.name for path in written if path.suffix in (".sto", ".mot")]
     answer = ask_opensim(what="files", tables=tables)

@@ -98,7 +98,7 @@ def test_files_without_common_time_are_refused(files):
     columns = LAB.forces()
     columns["time"] = columns["time"] + 100.0
     write_mot(files[1], columns)
-    refused(files, BadFile, "share no time")
+    refused(files, BadFile, "shares no time")
 
 
 def test_a_shift_between_the_files_is_said(files):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from measured_cases import SUBJECT
@@ -10,6 +12,7 @@ from drakegait.measured.body_angles import rotation_angles, rotation_matrix
 from drakegait.measured.fit import INSTANTS, StrideFit, StrideTarget
 from drakegait.measured.levenberg_marquardt import minimise
 from drakegait.reference.reference import Reference
+from drakegait.walker.coordinates import names
 from drakegait.walker.skeleton import Skeleton
 
 TAU = np.arange(INSTANTS) / INSTANTS
@@ -59,6 +62,20 @@ def test_a_bent_stride_is_put_back_on_its_feet(fit):
     before, after = bent.solve()
     worst = [np.sqrt(np.nanmean(bent.contact_errors(x)[:, 7:13] ** 2)) for x in (before, after)]
     assert worst[0] > 0.003 and worst[1] < 0.002
+
+
+def test_the_trunk_does_not_twitch_to_please_the_forces(fit):
+    """Forces that contradict the motion four times a stride move it by tenths of a degree only."""
+    forces = fit.target.forces.copy()
+    weight = fit.skeleton.total_mass * 9.81
+    forces[:, 0] += 0.1 * weight * np.sin(8.0 * np.pi * TAU)
+    shaken = StrideFit(fit.skeleton, replace(fit.target, forces=forces))
+    _, after = shaken.solve()
+    change = fit.spline.evaluate(after.coefficients, TAU, 2).T - fit.spline.evaluate(
+        shaken._measured, TAU, 2
+    ).T
+    tilt = names(fit.skeleton.kind).index("hat_tilt")
+    assert np.degrees(np.abs(change[:, tilt]).max()) < 0.4 * (8.0 * np.pi) ** 2
 
 
 def test_least_squares_of_a_line():

@@ -303,6 +303,8 @@ def test_curves_are_those_of_the_gait(pair, normal):
     assert (knee["band low"] < knee["band high"]).all()
     moments = table[table["quantity"] == "knee_flexion_moment"]
     assert moments["band low"].isna().all()
+    assert moments["reference, inverse dynamics"].notna().all()
+    assert knee["reference, inverse dynamics"].isna().all()
 
 
 # Texts -----------------------------------------------------------------------------------------

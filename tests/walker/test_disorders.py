@@ -122,6 +122,10 @@ REFUSED = [
     (lambda: planar(dis.JointStiffness("hip_adduction", "r", 9.0)), "joint of a planar walker"),
     (lambda: planar(dis.Prosthesis("r"), dis.Contracture("GAS", "r")).walker, "no gastrocnemius_r"),
     (lambda: planar(dis.Prosthesis("r"), dis.Spasticity("TA", "both")).walker, "no tibialis"),
+    (lambda: planar(dis.Prosthesis("r")).replace(strength={"soleus_r": 0.5}).walker,
+     "'soleus_r', .* no soleus_r"),
+    (lambda: planar(dis.Prosthesis("both")).replace(muscle_changes={"SOL": {"l0": 0.3}}).walker,
+     "'SOL', .* no soleus_r"),
     (lambda: planar(dis.Weakness("solus", "l")).walker, "'solus'.*mean 'soleus'"),
     (lambda: planar(dis.LimitedRange("knee", "l", 0, 20), dis.LimitedRange("knee", "both", 30, 60)),
      "stated once"),
@@ -152,6 +156,8 @@ def test_a_symmetric_model_has_no_one_sided_disorder(item):
 def test_a_symmetric_model_has_disorders_of_both_sides():
     study = GaitStudy.planar_symmetric()
     assert study.with_disorder(dis.Prosthesis("both"), dis.Spasticity("VAS", "both", 0.1)).walker
+    # With one prosthesis the other leg still has the muscle.
+    assert planar(dis.Prosthesis("r")).replace(strength={"SOL": 0.5}).walker
     apart = study.with_disorder(dis.Weakness("SOL", "r", 0.5), dis.Weakness("SOL", "l", 0.5))
     assert len(apart.disorders) == 2
     with pytest.raises(DrakegaitError, match="both sides"):

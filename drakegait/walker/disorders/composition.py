@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -13,7 +13,7 @@ from drakegait.walker.disorders.habits import Asymmetry, Pain
 from drakegait.walker.disorders.joints import JointStiffness, LimitedRange, Orthosis
 from drakegait.walker.disorders.limbs import LegLength, Prosthesis
 from drakegait.walker.disorders.muscles import Contracture, Spasticity, Weakness
-from drakegait.walker.muscles import MuscleSet
+from drakegait.walker.muscles import MuscleSet, select
 
 KINDS: dict[str, type[Disorder]] = {
     kind.kind: kind
@@ -92,11 +92,14 @@ def _of_side(item: Disorder, side: str) -> Disorder:
     return replace(item, side=side) if hasattr(item, "side") else item  # type: ignore[type-var]
 
 
-def check_walker(disorders: Sequence[Disorder], muscles: MuscleSet) -> None:
-    """Refuse disorders of muscles that the walker does not have.
+def check_walker(
+    disorders: Sequence[Disorder], muscles: MuscleSet, changed: Iterable[str] = ()
+) -> None:
+    """Refuse disorders, strengths and muscle entries of muscles that the walker does not have.
 
     Args:
         muscles: those of the unchanged subject.
+        changed: muscles or groups with another strength or other entries in the table.
 
     Raises:
         InvalidInput, UnknownName: in one sentence.
@@ -110,3 +113,10 @@ def check_walker(disorders: Sequence[Disorder], muscles: MuscleSet) -> None:
         if gone:
             allowed = f"about a muscle that is there; the prosthesis has no {gone[0]}"
             raise InvalidInput("disorder", item.describe(), allowed)
+    for name in changed:
+        stated = set(select(name, muscles.names, muscles.abbreviations))
+        if stated and stated <= lost:
+            raise InvalidInput(
+                "muscle with another strength or entry", name,
+                f"one that is there; the prosthesis has no {muscles.names[min(stated)]}",
+            )  # fmt: skip
