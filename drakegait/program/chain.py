@@ -140,23 +140,22 @@ def chain(
     num = points.num
     out = np.zeros((num, num_rows, layout.size))
     basis, period = state.basis, state.stride_time[:, :, None]
-    by_coordinate = out[:, :, : layout.forces].reshape(
-        num, num_rows, layout.num_coordinates, layout.width
-    )
     tau = np.zeros((num, num_rows)) if partials.tau is None else partials.tau.copy()
     time = out[:, :, layout.time : layout.placement]
     placement = out[:, :, layout.placement : layout.multipliers]
     motion = state.motion
-    for order, partial in enumerate((partials.q, partials.v, partials.a)):
-        if partial is None:
-            continue
-        row = basis[order] / state.stride_time**order
-        by_coordinate += partial[..., None] * row[:, None, None, :]
-        tau += np.einsum("pri,pi->pr", partial, motion.by_tau[order])
+    seen = [(k, p) for k, p in enumerate((partials.q, partials.v, partials.a)) if p is not None]
+    for order, partial in seen:
+        tau += (partial @ motion.by_tau[order][:, :, None])[..., 0]
+    if seen:
+        rows = np.stack([basis[order] / state.stride_time**order for order, _ in seen], axis=1)
+        by_order = np.stack([partial for _, partial in seen], axis=-1)
+        by_coordinate = by_order.reshape(num, -1, len(seen)) @ rows
+        out[:, :, : layout.forces] = by_coordinate.reshape(num, num_rows, -1)
     if partials.v is not None:
-        time[:, :, 0] -= np.einsum("pri,pi->pr", partials.v, state.v if advance else motion.rate)
+        time[:, :, 0] -= (partials.v @ (state.v if advance else motion.rate)[:, :, None])[..., 0]
     if partials.a is not None:
-        time[:, :, 0] -= 2.0 * np.einsum("pri,pi->pr", partials.a, motion.acceleration)
+        time[:, :, 0] -= 2.0 * (partials.a @ motion.acceleration[:, :, None])[..., 0]
     time[:, :, 0] /= period[:, :, 0]
     if advance:
         if partials.q is not None:
@@ -169,7 +168,7 @@ def chain(
             num, num_rows, layout.num_muscles, layout.width
         )
         by_force += partials.f[..., None] * basis[0][:, None, None, :]
-        tau += np.einsum("prm,pm->pr", partials.f, state.forces.by_tau[0])
+        tau += (partials.f @ state.forces.by_tau[0][:, :, None])[..., 0]
     if partials.multipliers is not None:
         stop = layout.multipliers + partials.multipliers.shape[2]  # may leave out toe torques
         out[:, :, layout.multipliers : stop] += partials.multipliers

@@ -49,6 +49,4 @@ class LeastSquaresMultipliers(DenseRows):
         return np.einsum("pri,pi->pr", state.contact_jacobian, state.residuals) / self.scale
 
     def partials(self, state: LocalState) -> Partials:
-        skeleton = self.formulation.walker.skeleton
-        turning = skeleton.contact_velocity_derivative(state.q, state.residuals)
-        return Partials(q=turning, residuals=state.contact_jacobian)
+        return Partials(q=state.contact_turning, residuals=state.contact_jacobian)

@@ -69,6 +69,7 @@ class DenseRows(LocalRows):
             pattern = pattern.with_projected_multipliers()
         self._mask = pattern.local(self.points.layout)
         self.rows, self.columns = np.nonzero(self._mask)
+        self._places = np.flatnonzero(self._mask)
 
     @abstractmethod
     def partials(self, state: LocalState) -> Partials:
@@ -76,5 +77,5 @@ class DenseRows(LocalRows):
 
     def jacobian(self, state: LocalState) -> np.ndarray:
         dense = chain(state, self.partials(state), self.num_rows)
-        dense /= self.scale[None, :, None]
-        return dense[:, self.rows, self.columns]
+        entries = dense.reshape(len(dense), -1).take(self._places, axis=1)
+        return entries / self.scale[self.rows]

@@ -147,6 +147,12 @@ class LocalState:
         return self.formulation.walker.skeleton.contact_jacobian(self.q)
 
     @cached_property
+    def contact_turning(self) -> np.ndarray:
+        """Derivative of C e by the coordinates, residual variables e held (num, 14, n)."""
+        skeleton = self.formulation.walker.skeleton
+        return skeleton.contact_velocity_derivative(self.q, self.residuals)
+
+    @cached_property
     def contact_positions(self) -> tuple[np.ndarray, np.ndarray]:
         """Values of the contact rows (num, 14) and their gradients (num, 14, num_coordinates)."""
         skeleton = self.formulation.walker.skeleton

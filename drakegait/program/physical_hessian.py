@@ -87,7 +87,7 @@ def physical_hessian(
         muscles = curved + np.swapaxes(slopes, 2, 3) @ stiff
     arms = walker.muscles.moment_arms
     motion += _by_lengths(muscles, arms)
-    first -= np.einsum("pma,mi->pia", by_muscle[:, :, 3:], arms)
+    first -= arms.T @ by_muscle[:, :, 3:]
     force_first = by_muscle[:, :, :3].copy()
     force_first[:, :, 0] -= balance @ arms.T
     return PhysicalHessian(
@@ -119,8 +119,10 @@ def hessian_of_muscles(
 
 def _by_lengths(muscles: np.ndarray, arms: np.ndarray) -> np.ndarray:
     """By coordinates and orders (num, n, 3, n, 3): muscle lengths are l0 - arms q."""
-    lengths = muscles[:, :, 3:, 3:]
-    return np.einsum("mi,pmab,mj->piajb", arms, lengths, arms, optimize=True)
+    num, (m, n) = len(muscles), arms.shape
+    pairs = (arms[:, :, None] * arms[:, None]).reshape(m, n * n)
+    lengths = muscles[:, :, 3:, 3:].transpose(0, 2, 3, 1) @ pairs
+    return lengths.reshape(num, 3, 3, n, n).transpose(0, 3, 1, 4, 2)
 
 
 def _first_derivatives(
@@ -132,16 +134,18 @@ def _first_derivatives(
 ) -> np.ndarray:
     """Gradient of the weighted laws by coordinates, velocities, accelerations (num, n, 3)."""
     dynamics, formulation = state.dynamics, state.formulation
-    turning = formulation.walker.skeleton.contact_velocity_derivative(state.q, state.residuals)
-    by_q = np.einsum("pi,pij->pj", balance, dynamics.by_q)
-    by_q += np.einsum("pr,prj->pj", velocities, turning)
-    by_q += np.einsum("pr,prj->pj", contact, state.contact_positions[1])
+
+    def along(weights: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        return (weights[:, None] @ rows)[:, 0]
+
+    by_q = along(balance, dynamics.by_q)
+    by_q += along(velocities, state.contact_turning)
+    by_q += along(contact, state.contact_positions[1])
     if limits is not None:
         names = formulation.walker.coordinate_names
         for k, limit in enumerate(formulation.limits):
             by_q[:, names.index(limit.coordinate)] += limits[:, k]
-    by_v = np.einsum("pi,pij->pj", balance, dynamics.by_v)
-    by_a = np.einsum("pi,pij->pj", balance, dynamics.mass_matrix)
+    by_v, by_a = along(balance, dynamics.by_v), along(balance, dynamics.mass_matrix)
     return np.stack([by_q, by_v, by_a], axis=-1)
 
 
@@ -155,4 +159,4 @@ def _muscles(
         [excitation.reshape(num, m, 2), np.broadcast_to(power[:, None, None], (num, m, 1))], axis=2
     )
     hessian = functions.hessian(state.muscle_inputs, weights, state.smoothing)
-    return hessian, np.einsum("pmo,pmok->pmk", weights, state.muscles[1])
+    return hessian, (weights[:, :, None] @ state.muscles[1])[:, :, 0]

@@ -16,6 +16,7 @@ All functions are vectorised over leading axes (...).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -47,7 +48,7 @@ class FeetGeometry:
 
     def jacobian(self, motion: Motion) -> np.ndarray:
         """Contact Jacobian (..., 14, n)."""
-        axes, columns = self._axes_and_columns(motion)
+        axes, columns = _axes_and_columns(self, motion)
         rows = _rows(np.swapaxes(columns, -1, -2), self.moves * axes[..., None, :, 2])
         if not self.tilts:
             return rows
@@ -59,7 +60,7 @@ class FeetGeometry:
         Args:
             multipliers: (..., 14) forces [N] and yaw moments [N m] on the feet.
         """
-        axes, columns = self._axes_and_columns(motion)
+        axes, columns = _axes_and_columns(self, motion)
         by_foot = multipliers[..., :14].reshape(*multipliers.shape[:-1], 2, 7)
         forces = by_foot[..., :6].reshape(*by_foot.shape[:-1], 2, 3)
         # lambda . (w_i x J_j) = (lambda x w_i) . J_j, summed over the four points
@@ -87,7 +88,7 @@ class FeetGeometry:
         Args:
             speeds: (..., n).
         """
-        axes, columns = self._axes_and_columns(motion)
+        axes, columns = _axes_and_columns(self, motion)
         strict = self.inner - np.eye(len(self.inner))
         spin = axes * speeds[..., None]
         carried = self.inner @ (columns * speeds[..., None, None, :, None])
@@ -172,20 +173,25 @@ class FeetGeometry:
         if self.tilts:
             none = np.zeros((*weights.shape[:-1], 4))
             multipliers = np.concatenate([multipliers, none], axis=-1)
-        columns = self._axes_and_columns(motion)[1]
+        columns = _axes_and_columns(self, motion)[1]
         change = columns[..., 1, :, :2] - columns[..., 0, :, :2]
         bend = np.stack([2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y], axis=-1)
         bend = (bend * (heading / square**2)[..., None]).reshape(*x.shape, 2, 2)
         bent = (change @ bend @ np.swapaxes(change, -1, -2)).sum(axis=-3)
         return self.force_derivative(motion, multipliers) + bent
 
-    def _axes_and_columns(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-        """Axes (..., n, 3) and velocities (..., 2, 2, n, 3) of the points per unit speed."""
-        axes, at_origin = motion.twists[..., :3], motion.twists[..., 3:]
-        points = self.contact_points(motion)
-        # v + w x p = v + w @ [p x]: row vector times the matrix of p
-        columns = axes[..., None, None, :, :] @ skew(points) + at_origin[..., None, None, :, :]
-        return axes, columns * self.moves[:, None, :, None]
+
+@lru_cache(maxsize=4)
+def _axes_and_columns(geometry: FeetGeometry, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Axes (..., n, 3) and velocities (..., 2, 2, n, 3) of the points per unit speed.
+
+    Kept for the last motions: all rows and derivatives of an evaluation ask for them.
+    """
+    axes, at_origin = motion.twists[..., :3], motion.twists[..., 3:]
+    points = geometry.contact_points(motion)
+    # v + w x p = v + w @ [p x]: row vector times the matrix of p
+    columns = axes[..., None, None, :, :] @ skew(points) + at_origin[..., None, None, :, :]
+    return axes, columns * geometry.moves[:, None, :, None]
 
 
 def _rows(point_rows: np.ndarray, yaw_rows: np.ndarray) -> np.ndarray:

@@ -25,6 +25,7 @@ bodies moved by the outer one of i and j,
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -127,8 +128,9 @@ class Tree:
         return self.inner - np.eye(len(self.inner))
 
 
+@lru_cache(maxsize=4)
 def spatial_inertias(tree: Tree, motion: Motion) -> np.ndarray:
-    """Inertia matrices (..., bodies, 6, 6) about the world origin."""
+    """Inertia matrices (..., bodies, 6, 6) about the world origin; kept for the last motions."""
     rotations = motion.rotations
     coms = motion.origins + _apply(rotations, tree.coms)
     first = tree.masses[:, None, None] * skew(coms)
@@ -139,6 +141,34 @@ def spatial_inertias(tree: Tree, motion: Motion) -> np.ndarray:
     result[..., 3:, :3] = -first
     result[..., 3:, 3:] = tree.masses[:, None, None] * np.eye(3)
     return result
+
+
+def inverse_dynamics(tree: Tree, motion: Motion, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+    """tau = M a + bias - gravity forces (..., n), without derivatives.
+
+    Args:
+        v, a: (..., n) velocities and accelerations of the coordinates.
+    """
+    twists = motion.twists
+    steps = twists * v[..., None]
+    parent_velocity = tree.strictly_inner.T @ steps
+    accelerations = twists * a[..., None] + _spatial_cross(parent_velocity, steps)
+    ground = np.array([0.0, 0.0, 0.0, 0.0, 0.0, tree.gravity])
+    velocity = tree.moves.T @ steps
+    acceleration = tree.moves.T @ accelerations + ground
+    gained = spatial_inertias(tree, motion) @ np.stack([velocity, acceleration], axis=-1)
+    momentum, force = gained[..., 0], gained[..., 1]
+    spin, linear = velocity[..., :3], velocity[..., 3:]
+    force[..., :3] += cross(spin, momentum[..., :3]) + cross(linear, momentum[..., 3:])
+    force[..., 3:] += cross(spin, momentum[..., 3:])
+    return np.sum(twists * (tree.moves @ force), axis=-1)
+
+
+def _spatial_cross(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """X x Y."""
+    angular = cross(x[..., :3], y[..., :3])
+    linear = cross(x[..., :3], y[..., 3:]) + cross(x[..., 3:], y[..., :3])
+    return np.concatenate([angular, linear], axis=-1)
 
 
 def inverse_dynamics_derivatives(

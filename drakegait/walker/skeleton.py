@@ -2,10 +2,11 @@
 
     M(q) q'' + bias(q, q') = gravity(q) + passive + B tau + C(q)^T lambda      (1), (16), (25)
 
-Arrays of floats go through Drake's double plant, arrays of `AutoDiffXd` through its copy; methods
-that return derivatives take floats only. Coordinates have the order and signs of
-`drakegait.walker.coordinates`; the contact rows are, for the right and then the left foot,
-heel x, y, z, toe x, y, z and the rotation about the vertical (yaw).
+Arrays of floats go through Drake's double plant, arrays of `AutoDiffXd` through its copy; the
+postures and inverse dynamics of many instants go through numpy with what was read of the plant
+(tests hold both equal). Methods that return derivatives take floats only. Coordinates have the
+order and signs of `drakegait.walker.coordinates`; the contact rows are, for the right and then
+the left foot, heel x, y, z, toe x, y, z and the rotation about the vertical (yaw).
 """
 
 from __future__ import annotations
@@ -21,7 +22,12 @@ from pydrake.multibody.plant import MultibodyPlant, MultibodyPlant_
 from drakegait.errors import BadFile, InvalidInput
 from drakegait.walker import coordinates
 from drakegait.walker.contact_kinematics import FeetGeometry
-from drakegait.walker.dynamics_derivatives import Motion, inverse_dynamics_derivatives
+from drakegait.walker.dynamics_derivatives import (
+    Motion,
+    inverse_dynamics,
+    inverse_dynamics_derivatives,
+)
+from drakegait.walker.joint_tree import JointTree
 from drakegait.walker.model_file import CONTACT_FRAMES, model_sdf
 from drakegait.walker.plant_door import PlantDoor
 from drakegait.walker.plant_tree import check_joints, read_tree
@@ -32,6 +38,9 @@ from drakegait.walker.subject import AddedMass, Subject
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s^2]."""
+
+# From here on numpy costs less than Drake's calls for each instant (a third for 76).
+_MANY_INSTANTS = 16
 
 
 class Skeleton:
@@ -75,6 +84,7 @@ class Skeleton:
         self.feet_geometry = self._read_feet()
         self.total_mass = float(self.tree.masses.sum())
         self._double = self._open(self.plant, float)
+        self._joints = JointTree(self.plant, self.coordinates, self.tree.names)
         self._autodiff: PlantDoor | None = None
         self._last: tuple[np.ndarray, Motion] | None = None
 
@@ -124,6 +134,8 @@ class Skeleton:
 
     def inverse_dynamics(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """M(q) a + bias(q, v) - gravity_forces(q) (..., n): forces that make the motion."""
+        if _many(q) and _many(v) and _many(a):
+            return inverse_dynamics(self.tree, self.motion(q), v, a)
         return self._each(lambda door, q, v, a: door.inverse_dynamics(q, v, a), q, v, a)
 
     def kinetic_energy(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -267,8 +279,15 @@ class Skeleton:
             return self._door(q).motion(q)
         # The residual, its derivatives and the contact rows are asked for at the same q.
         if self._last is None or not np.array_equal(self._last[0], q):
-            self._last = q.copy(), self._double.motion(q)
+            source = self._joints if _many(q) else self._double
+            self._last = q.copy(), source.motion(q)
         return self._last[1]
+
+
+def _many(values: np.ndarray) -> bool:
+    """Whether numpy over all instants is cheaper than a call of Drake for each."""
+    values = np.asarray(values)
+    return values.dtype != object and values.ndim > 1 and values[..., 0].size >= _MANY_INSTANTS
 
 
 def _as_autodiff(values: np.ndarray) -> np.ndarray:

@@ -55,13 +55,12 @@ class LocalElimination:
         rows = np.arange(feet.NUM_ROWS)
         gram[:, rows, rows] += ~loaded
         inverse = np.linalg.inv(gram)
-        turning = walker.skeleton.contact_velocity_derivative(state.q, state.residuals)
         arms = walker.muscles.moment_arms
         motion = np.stack([dynamics.by_q, dynamics.by_v, dynamics.mass_matrix], axis=-1)
         forces = np.broadcast_to(-arms.T, (num, n, len(arms)))
         balance = np.concatenate([motion.reshape(num, n, 3 * n), forces], axis=2)
         needed = contact @ balance
-        needed[:, :, : 3 * n : 3] += turning * loaded[:, :, None]
+        needed[:, :, : 3 * n : 3] += state.contact_turning * loaded[:, :, None]
         multipliers = inverse @ needed
         residuals = balance - np.swapaxes(contact, 1, 2) @ multipliers
         local = np.concatenate([multipliers, residuals], axis=1)

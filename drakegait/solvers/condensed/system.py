@@ -33,6 +33,7 @@ from drakegait.solvers.condensed.sparse_structure import SparseStructure
 from drakegait.walker import feet
 
 _ELIMINATED = (EquationsOfMotion, LeastSquaresMultipliers)
+_REFINEMENTS, _LAST_CORRECTION = 3, 1e-7  # at most; of the solution: the next is below 1e-14
 
 
 @dataclass(frozen=True)
@@ -228,17 +229,20 @@ class CondensedSystem:
 
     # Solve -------------------------------------------------------------------------------
 
-    def solve(self, b: np.ndarray, c: np.ndarray, refine: int = 2) -> tuple[np.ndarray, np.ndarray]:
+    def solve(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """dx and the equalities' dy (at their rows, 0 elsewhere) for right-hand sides b and c.
 
         Args:
             b: (num_variables,); c: (num_constraints,), read at equality rows.
         """
         x, y = self._once(b, c)
-        for _ in range(refine):
-            rest_b, rest_c = self._residual(x, y, b, c)
-            more_x, more_y = self._once(rest_b, rest_c)
+        for _ in range(_REFINEMENTS):
+            more_x, more_y = self._once(*self._residual(x, y, b, c))
             x, y = x + more_x, y + more_y
+            # Each correction is that share of the one before which the first is of the solution:
+            # what would follow now is rounding.
+            if _small(more_x, x) and _small(more_y, y):
+                break
         return x, y
 
     def _times(self, x: np.ndarray) -> np.ndarray:
@@ -311,6 +315,10 @@ def _own(blocks: HessianBlocks, shared: int) -> np.ndarray:
     out[:, : 3 * n, : 3 * n] = blocks.motion.reshape(num, 3 * n, 3 * n)
     out[:, shared - NUM_LATE :, shared - NUM_LATE :] = blocks.late
     return out
+
+
+def _small(change: np.ndarray, whole: np.ndarray) -> bool:
+    return bool(np.abs(change).max() <= _LAST_CORRECTION * np.abs(whole).max())
 
 
 def _add_square(matrix: np.ndarray, rows: np.ndarray, weight: np.ndarray) -> None:
