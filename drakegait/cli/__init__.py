@@ -9,6 +9,7 @@ Exit codes: 0 done; 2 bad input (one sentence on stderr, nothing solved, nothing
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from typing import Any
@@ -54,6 +55,7 @@ def main(arguments: list[str] | None = None) -> None:
         code = INTERRUPTED  # while Drake's libraries were loaded
     if code == INTERRUPTED:
         _say("interrupted.")
+    gc.freeze()  # the interpreter would search all we have for cycles before it ends
     sys.exit(code)
 
 
