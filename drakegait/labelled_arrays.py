@@ -49,15 +49,28 @@ class LabelledArrays:
 
         return xr.Dataset(dict(self.arrays), coords=dict(self.labels), attrs=dict(self.attributes))
 
-    def write(self, group: h5netcdf.Group) -> None:
-        """Write into an open file; dimensions of enclosing groups are shared."""
+    def write(self, group: h5netcdf.Group, around: Mapping[str, int]) -> dict[str, int]:
+        """Write into an open file.
+
+        Args:
+            around: sizes of the dimensions of the enclosing groups, which are shared.
+
+        Returns:
+            Sizes of all dimensions seen from this group.
+        """
         group.attrs.update(self.attributes)
+        sizes = dict(around)
         # Labels first: they become the scales of their dimensions, to which arrays are attached.
         for name, (dims, values, attributes) in {**self.labels, **self.arrays}.items():
             more = {}
             if name in self.arrays and (beside := self._labels_beside(dims)):
                 more["coordinates"] = " ".join(beside)
-            _write_array(group, name, dims, np.asarray(values), {**attributes, **more})
+            values = np.asarray(values)
+            for dim, size in zip(dims, values.shape, strict=True):
+                if sizes.get(dim) != size:
+                    group.dimensions[dim] = sizes[dim] = size
+            _write_array(group, name, dims, values, {**attributes, **more})
+        return sizes
 
     def _labels_beside(self, dims: tuple[str, ...]) -> list[str]:
         """Labels of places along `dims` besides those named like their dimension."""
@@ -72,7 +85,7 @@ def write_netcdf(path: str | Path, groups: Mapping[str, LabelledArrays]) -> None
     """Write a file, beside the place first and renamed when complete.
 
     Args:
-        groups: by name, `ROOT` first.
+        groups: by name; one is the `ROOT`.
 
     Raises:
         BadFile: the folder does not exist or cannot be written to.
@@ -85,8 +98,10 @@ def write_netcdf(path: str | Path, groups: Mapping[str, LabelledArrays]) -> None
     beside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with h5netcdf.File(beside, "w") as file:
+            shared = groups[ROOT].write(file, {})
             for name, content in groups.items():
-                content.write(file if name == ROOT else file.create_group(name))
+                if name != ROOT:
+                    content.write(file.create_group(name), shared)
         os.replace(beside, path)
     except OSError as error:
         reason = error.strerror or str(error).splitlines()[0]
@@ -104,20 +119,8 @@ def _write_array(
 ) -> None:
     import h5py
 
-    for dim, size in zip(dims, values.shape, strict=True):
-        if _size(group, dim) != size:
-            group.dimensions[dim] = size
     kind = {"U": h5py.string_dtype()}.get(values.dtype.kind, values.dtype)
     missing = np.nan if values.dtype.kind == "f" else None
     variable = group.create_variable(name, dims, kind, fillvalue=missing)
     variable[...] = values.astype(object) if values.dtype.kind == "U" else values
     variable.attrs.update(attributes)
-
-
-def _size(group: h5netcdf.Group | None, dim: str) -> int | None:
-    """Of a dimension that a group or one around it has; None if it has none of this name."""
-    while group is not None:
-        if dim in group.dimensions:
-            return group.dimensions[dim].size
-        group = group.parent
-    return None
