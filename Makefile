@@ -58,6 +58,8 @@ $(VENV)/run.stamp: pyproject.toml requirements/run.txt
 	@$(PYTHON) -m venv $(VENV)
 	@$(PIP) --require-hashes -r requirements/run.txt
 	@$(PIP) --no-deps --no-build-isolation --editable .
+	@# Unlike a wheel, a checkout is not compiled by pip; the first walk need not do it.
+	@$(PY) -m compileall -q drakegait
 	@$(PY) -c 'import pydrake.math' 2>/dev/null || { \
 	  echo "Drake does not start here; mostly the system lacks GLib" \
 	    "(Debian and Ubuntu: apt-get install libglib2.0-0)"; exit 1; }

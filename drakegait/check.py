@@ -1,7 +1,7 @@
 """The finished gait judged at many instants, by a path of its own.
 
 Nothing is asked of the program that found the gait: the splines are evaluated by
-`scipy.interpolate.BSpline`, the equations of motion by Drake's mass matrix, bias and gravity, the
+Drake's `BsplineTrajectory`, the equations of motion by its mass matrix, bias and gravity, the
 contact forces by the pseudo-inverse of eq. (17) and the muscles by their exact laws. A gait passes
 if nothing exceeds twice its tolerance between the control points.
 """

@@ -180,7 +180,7 @@ class Gait:
         """Labelled arrays with units from 0 to 100 % of the stride, see `drakegait.sampling`."""
         from drakegait.sampling import sample
 
-        return sample(self, num)
+        return sample(self, num).dataset()
 
     # Nodal values ------------------------------------------------------------------------
 

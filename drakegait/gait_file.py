@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +19,10 @@ import numpy as np
 from drakegait.check import CheckReport
 from drakegait.errors import BadFile, DrakegaitError
 from drakegait.gait import Gait
+from drakegait.labelled_arrays import ROOT, LabelledArrays, write_netcdf
 from drakegait.program.kkt import KktMultipliers
-from drakegait.reference.netcdf_file import reference_dataset, reference_of
+from drakegait.reference.netcdf_file import reference_arrays, reference_of
+from drakegait.sampling import sample
 from drakegait.solvers.outcome import Outcome, StartRecord
 from drakegait.study import GaitStudy
 from drakegait.summary import versions
@@ -50,13 +51,7 @@ def save(gait: Gait, path: str | Path) -> None:
     Raises:
         BadFile: the folder does not exist or cannot be written to.
     """
-    import xarray as xr
-
-    path = Path(path)
-    if path.is_dir():
-        raise BadFile(path, "is a folder, not a file to write.")
-    root = gait.sample()
-    root.attrs |= {
+    attributes = {
         "title": f"{gait.study.model} walking at {gait.speed:.3g} m/s",
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
@@ -66,26 +61,20 @@ def save(gait: Gait, path: str | Path) -> None:
         "check": _text(None if gait.report is None else gait.report.to_dict()),
         "versions": _text(versions()),
     }
-    design = {
-        name: (dims, np.asarray(getattr(gait.values, name), dtype=float))
-        for name, dims in _DESIGN_DIMS.items()
-    }
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        root.to_netcdf(beside, engine="h5netcdf")
-        xr.Dataset(design).to_netcdf(beside, mode="a", group="design", engine="h5netcdf")
-        if gait.kkt is not None:
-            kkt = {name: (dim, getattr(gait.kkt, name)) for name, dim in _KKT_DIMS.items()}
-            xr.Dataset(kkt).to_netcdf(beside, mode="a", group="kkt", engine="h5netcdf")
-        if gait.study.reference is not None:
-            reference = reference_dataset(gait.study.reference)
-            reference.to_netcdf(beside, mode="a", group="reference", engine="h5netcdf")
-        os.replace(beside, path)
-    except OSError as error:
-        reason = error.strerror or str(error).splitlines()[0]
-        raise BadFile(path, f"cannot be written ({reason}).") from None
-    finally:
-        beside.unlink(missing_ok=True)
+    groups = {
+        ROOT: dataclasses.replace(sample(gait), attributes=attributes),
+        "design": LabelledArrays({
+            name: (dims, np.asarray(getattr(gait.values, name), dtype=float), {})
+            for name, dims in _DESIGN_DIMS.items()
+        }),
+    }  # fmt: skip
+    if gait.kkt is not None:
+        groups["kkt"] = LabelledArrays(
+            {name: ((dim,), getattr(gait.kkt, name), {}) for name, dim in _KKT_DIMS.items()}
+        )
+    if gait.study.reference is not None:
+        groups["reference"] = reference_arrays(gait.study.reference)
+    write_netcdf(path, groups)
 
 
 def load(path: str | Path) -> Gait:

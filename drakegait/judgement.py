@@ -9,7 +9,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import BSpline
+from pydrake.math import BsplineBasis
+from pydrake.trajectories import BsplineTrajectory
 
 from drakegait.check import CheckItem
 from drakegait.judged_disorders import disorders
@@ -49,13 +50,14 @@ class Judged:
         self.motion = self.motion_at(self.tau)
 
     def motion_at(self, tau: np.ndarray) -> Motion:
-        """Motion and muscle forces at tau in [0, 1], by scipy's B-splines."""
+        """Motion and muscle forces at tau in [0, 1], by Drake's B-splines."""
         values = self.gait.values
-        curves = [
-            _periodic_spline(coefficients)
-            for coefficients in (values.coordinate_coefficients, values.force_coefficients)
-        ]
-        motion, forces = (tuple(curve(tau, order) for order in range(3)) for curve in curves)
+        motion, forces = (
+            tuple(curve.MakeDerivative(order).vector_values(tau).T for order in range(3))
+            for curve in map(
+                _periodic_spline, (values.coordinate_coefficients, values.force_coefficients)
+            )
+        )
         return Motion.from_derivatives(tau, self.stride_time, self.stride_length, motion, forces)
 
     @cached_property
@@ -288,10 +290,11 @@ def costs(judged: Judged) -> list[CheckItem]:
     ]  # fmt: skip
 
 
-def _periodic_spline(coefficients: np.ndarray) -> BSpline:
+def _periodic_spline(coefficients: np.ndarray) -> BsplineTrajectory:
     """The functions with `coefficients` (num, M), M bells centred on the nodes k / M, on [0, 1]."""
     count = coefficients.shape[1]
     knots = np.arange(-_DEGREE, count + _DEGREE + 1) / count
     # The bell that starts at knot i is centred on node i - 2.
     wrapped = np.arange(-2, count + 3) % count
-    return BSpline(knots, coefficients[:, wrapped].T, _DEGREE)
+    control_points = coefficients[:, wrapped].T[..., None]
+    return BsplineTrajectory(BsplineBasis(_DEGREE + 1, knots.tolist()), list(control_points))

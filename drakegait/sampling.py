@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drakegait.errors import InvalidInput
+from drakegait.labelled_arrays import LabelledArrays
 from drakegait.loads import Loads, loads_along, muscle_inputs
 from drakegait.walker import coordinates, feet
 from drakegait.walker.skeleton import GRAVITY
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from drakegait.gait import Gait
     from drakegait.motion import Motion
 
@@ -30,18 +29,16 @@ LOADED = 0.02
 Variable = tuple[tuple[str, ...], np.ndarray, str, str]
 
 
-def sample(gait: Gait, num: int = 201) -> xr.Dataset:
+def sample(gait: Gait, num: int = 201) -> LabelledArrays:
     """Everything about `gait` at `num` instants from 0 to 100 % of the stride.
 
     Returns:
-        A dataset whose variables carry `units` and `long_name`; dimensions time, coordinate,
-        joint (coordinates between segments), muscle, foot, axis, contact_point, segment.
+        Arrays that carry `units` and `long_name`; dimensions time, coordinate, joint (coordinates
+        between segments), muscle, foot, axis, contact_point, segment.
 
     Raises:
         InvalidInput: fewer than 2 instants.
     """
-    import xarray as xr
-
     if isinstance(num, bool) or not isinstance(num, (int, np.integer)) or num < 2:
         raise InvalidInput("num", num, "a whole number of at least 2")
     tau = np.linspace(0.0, 1.0, num)
@@ -60,24 +57,25 @@ def sample(gait: Gait, num: int = 201) -> xr.Dataset:
     rotation = gait.study.walker.is_rotation
     names = gait.coordinate_names
     joints = [names[i] for i in coordinates.joint_angles(skeleton.kind)]
+    time = {"units": "s", "long_name": "time from right heel strike"}
     labels = {
-        "time": ("time", motion.time, {"units": "s", "long_name": "time from right heel strike"}),
-        "percent": ("time", 100.0 * tau, {"units": "%", "long_name": "share of the stride"}),
-        "coordinate": ("coordinate", list(names)),
-        "coordinate_unit": ("coordinate", ["degree" if r else "m" for r in rotation]),
-        "joint": ("joint", joints),
-        "muscle": ("muscle", list(gait.muscle_names)),
-        "foot": ("foot", list(FEET)),
-        "axis": ("axis", list(AXES)),
-        "contact_point": ("contact_point", list(feet.POINT_NAMES)),
-        "segment": ("segment", list(skeleton.body_poses(motion.q[0]))),
-        "event": ("event", list(feet.EVENT_NAMES)),
+        "time": (("time",), motion.time, time),
+        "percent": (("time",), 100.0 * tau, {"units": "%", "long_name": "share of the stride"}),
+        "coordinate": (("coordinate",), list(names), {}),
+        "coordinate_unit": (("coordinate",), ["degree" if r else "m" for r in rotation], {}),
+        "joint": (("joint",), joints, {}),
+        "muscle": (("muscle",), list(gait.muscle_names), {}),
+        "foot": (("foot",), list(FEET), {}),
+        "axis": (("axis",), list(AXES), {}),
+        "contact_point": (("contact_point",), list(feet.POINT_NAMES), {}),
+        "segment": (("segment",), list(skeleton.body_poses(motion.q[0])), {}),
+        "event": (("event",), list(feet.EVENT_NAMES), {}),
     }
-    return xr.Dataset(
-        {name: (dims, values, {"units": unit, "long_name": text})
-         for name, (dims, values, unit, text) in variables.items()},
-        coords=labels,
-    )  # fmt: skip
+    arrays = {
+        name: (dims, values, {"units": unit, "long_name": text})
+        for name, (dims, values, unit, text) in variables.items()
+    }
+    return LabelledArrays(arrays, labels)
 
 
 def _shown(gait: Gait, values: np.ndarray) -> np.ndarray:

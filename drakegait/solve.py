@@ -153,6 +153,13 @@ def _solver(name: str) -> Callable[..., Solution]:
     return solve_with_ipopt_mumps
 
 
+def _with_points(study: GaitStudy, interior_points: tuple[int, ...]) -> GaitStudy:
+    """The study with other control points, and the same walker and reference: no second parsing."""
+    other = study.replace(interior_points=interior_points)
+    vars(other).update(walker=study.walker, reference_walk=study.reference_walk)
+    return other
+
+
 class _Run:
     """The rounds of one solve."""
 
@@ -195,7 +202,7 @@ class _Run:
             f"{schedule.num_points} -> {denser.num_points} control points, added in phases "
             + ", ".join(str(phase + 1) for phase in sorted(phases))
         )
-        self.study = self.study.replace(interior_points=denser.interior_points)
+        self.study = _with_points(self.study, denser.interior_points)
         self._again(self.program.values(self.solution.x))
         self._recentre()
 
@@ -253,7 +260,7 @@ class _Run:
             refinements=tuple(self.refinements),
         )
         found = Gait(
-            study=self.study.replace(interior_points=program.formulation.schedule.interior_points),
+            study=_with_points(self.study, program.formulation.schedule.interior_points),
             values=program.values(solution.x),
             outcome=outcome,
             cost={"total": sum(parts.values()), **parts},

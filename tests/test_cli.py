@@ -349,6 +349,25 @@ def test_help_needs_nothing_heavy():
     assert "replay" in done.stdout
 
 
+def test_a_walk_loads_no_library_that_it_can_do_without(tmp_path):
+    """From the prompt to `gait.nc`: what is slow to import is for pictures, tables and clusters."""
+    code = (
+        "import sys\n"
+        "from drakegait.cli import main\n"
+        "try:\n    main(sys.argv[1:])\nexcept SystemExit as end:\n    code = end.code\n"
+        "slow = {'xarray', 'pandas', 'dask', 'distributed', 'matplotlib', 'scipy.interpolate',\n"
+        "        'scipy.optimize', 'scipy.special', 'pydrake.all', 'jinja2', 'ezc3d'}\n"
+        "print(code, sorted(slow & set(sys.modules)), 'casadi' in sys.modules)\n"
+    )
+    # Ended by the time limit at once: what is loaded does not hang on the number of iterations.
+    walk = ["walk", "--model", "planar-symmetric", "--nodes", "13", "--time-limit", "0.1"]
+    walk += ["--no-pictures", "--out", str(tmp_path)]
+    command = [sys.executable, "-c", code, *walk]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1] == "3 [] True", done.stdout + done.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {"gait.nc", "summary.json"}
+
+
 def test_version(capsys):
     code, out, _ = run(capsys, "--version")
     assert code == 0 and out.startswith("drakegait ")

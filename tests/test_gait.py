@@ -390,6 +390,24 @@ def test_other_programs_can_read_the_file(planar, tmp_path):
         assert dataset.sizes["time"] == 201 and dataset.time.dtype == float
 
 
+def test_the_file_is_the_one_that_xarray_would_write(planar, tmp_path):
+    """Names, order, types, attributes, labels and missing values, down to the encoding."""
+    planar.save(tmp_path / "gait.nc")
+    planar.sample().to_netcdf(tmp_path / "its.nc", engine="h5netcdf")
+    with (
+        xr.open_dataset(tmp_path / "gait.nc", engine="h5netcdf") as ours,
+        xr.open_dataset(tmp_path / "its.nc", engine="h5netcdf") as its,
+    ):
+        xr.testing.assert_identical(ours.drop_attrs(deep=False), its)
+        assert set(ours.coords) == set(its.coords)
+        for name, variable in its.variables.items():
+            encodings = [x.encoding | {"source": None} for x in (ours[name], variable)]
+            np.testing.assert_equal(*encodings)
+    with xr.open_dataset(tmp_path / "gait.nc", group="design", engine="h5netcdf") as design:
+        assert design.coordinate_coefficients.dims == ("coordinate", "coefficient")
+        assert not design.coords and design.stride_time.dims == ()
+
+
 def saved(gait: Gait, path, **attributes) -> None:
     """A file of `gait` with other attributes of the root; None removes one."""
     import h5netcdf

@@ -22,9 +22,10 @@ _MODELS = _GROUND | {"walker", "transcription"}
 MAY_IMPORT = {
     "errors": set(),
     "settings": {"errors"},
+    "labelled_arrays": {"errors"},
     "walker": _GROUND,
     "transcription": _GROUND,
-    "reference": _MODELS,
+    "reference": _MODELS | {"labelled_arrays"},
     "measured": _MODELS | {"reference"},
     "program": _MODELS | {"reference"},
     "study": _MODELS | {"reference", "program", "study_file", "study_rules"},

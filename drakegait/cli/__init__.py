@@ -9,6 +9,8 @@ Exit codes: 0 done; 2 bad input (one sentence on stderr, nothing solved, nothing
 
 from __future__ import annotations
 
+import atexit
+import gc
 import os
 import sys
 from typing import Any
@@ -29,6 +31,10 @@ BAD_INPUT, INTERRUPTED = 2, 130
 # Matrices here are small: a second thread costs more than it brings, and sums in another order end
 # at another optimum. Read when NumPy is loaded, which no command has done yet.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Searching for cycles after every 700 new objects, while libraries load, and in all there is before
+# the process ends, would take a tenth of a second.
+gc.set_threshold(20_000)
+atexit.register(gc.freeze)
 # Typer's errors about options derive from these; where Typer keeps them depends on its version.
 _USAGE_ERROR = typer.BadParameter.__mro__[1]
 _COMMAND_LINE_ERROR = typer.BadParameter.__mro__[2]

@@ -6,10 +6,12 @@ import math
 from typing import Protocol
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from pydrake.trajectories import PiecewisePolynomial
 
 from drakegait.errors import InvalidInput
 from drakegait.transcription.splines import PeriodicQuintic
+
+_ROUNDING = 1e-14  # relative difference of the two ends of a period
 
 
 class PeriodicCurves(Protocol):
@@ -68,12 +70,31 @@ class SampledCurves:
     Args:
         tau: (K,) increasing from 0 to 1.
         samples: (K, num_functions); first and last row equal.
+
+    Raises:
+        InvalidInput: samples that are not finite, or whose ends differ.
     """
 
     def __init__(self, tau: np.ndarray, samples: np.ndarray):
-        self._spline = CubicSpline(tau, samples, axis=0, bc_type="periodic")
+        self.tau = np.asarray(tau, dtype=float)
+        self.samples = np.asarray(samples, dtype=float)
+        if not np.isfinite(self.samples).all():
+            raise InvalidInput("samples of a periodic curve", "nan or inf", "finite numbers")
+        gap = float(np.abs(self.samples[-1] - self.samples[0]).max())
+        if gap > _ROUNDING * np.abs(self.samples).max():
+            raise InvalidInput("last samples minus first", gap, "0, as the curves are periodic")
+        # Drake's and not scipy's: importing scipy.interpolate would cost every command 0.25 s.
+        spline = PiecewisePolynomial.CubicWithContinuousSecondDerivatives(
+            self.tau, self.samples.T, periodic_end_condition=True
+        )
+        self._orders = [spline, spline.derivative(1), spline.derivative(2)]
+
+    def __reduce__(self) -> tuple[type[SampledCurves], tuple[np.ndarray, np.ndarray]]:
+        return SampledCurves, (self.tau, self.samples)  # Drake's splines cannot be pickled
 
     def values(self, tau: np.ndarray, derivative: int = 0) -> np.ndarray:
         if derivative not in range(3):
             raise InvalidInput("derivative of the forces", derivative, "0 to 2")
-        return self._spline(np.asarray(tau, dtype=float) % 1.0, nu=derivative)
+        tau = np.asarray(tau, dtype=float) % 1.0
+        found = self._orders[derivative].vector_values(tau.ravel())
+        return found.T.reshape(*tau.shape, self.samples.shape[1])

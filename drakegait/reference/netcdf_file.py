@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drakegait.errors import BadFile, DrakegaitError, UnknownName
+from drakegait.labelled_arrays import ROOT, LabelledArrays, write_netcdf
 from drakegait.reference.curves import SampledCurves, SplineCurves
 from drakegait.reference.deviation import DeviationSettings
 from drakegait.transcription.foot_placement import FootPlacement
@@ -23,8 +23,6 @@ from drakegait.transcription.splines import PeriodicQuintic
 from drakegait.walker.subject import Subject
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from drakegait.reference.reference import Reference
 
 FORMAT = "drakegait reference"
@@ -34,21 +32,19 @@ _NODES = 201
 _FORCE_INTERVALS = 1200  # a multiple of the usual tables' 50, 100, 200: then exact
 
 
-def reference_dataset(reference: Reference) -> xr.Dataset:
+def reference_arrays(reference: Reference) -> LabelledArrays:
     """A reference as arrays and facts."""
-    import xarray as xr
-
     motion = reference.motion
     if isinstance(motion, SplineCurves):
         coefficients = motion.coefficients
     else:
         spline = PeriodicQuintic(_NODES)
         coefficients = spline.coefficients(reference.coordinate_values(spline.node_times).T)
-    arrays = {"coefficients": (("coordinate", "coefficient"), coefficients)}
+    arrays = {"coefficients": (("coordinate", "coefficient"), coefficients, {})}
     if reference.forces is not None:
         tau = np.linspace(0.0, 1.0, _FORCE_INTERVALS + 1)
         forces = reference.ground_reactions(tau).reshape(len(tau), 6)
-        arrays["forces"] = (("instant", "force"), forces)
+        arrays["forces"] = (("instant", "force"), forces, {})
     facts = {
         "kind": reference.kind,
         "name": reference.name,
@@ -57,11 +53,11 @@ def reference_dataset(reference: Reference) -> xr.Dataset:
         "foot_placement": dataclasses.asdict(reference.foot_placement),
         "deviation": reference.deviation.to_dict(),
     }
-    return xr.Dataset(arrays, attrs={"facts": _text(facts)})
+    return LabelledArrays(arrays, attributes={"facts": _text(facts)})
 
 
 def reference_of(arrays: dict[str, np.ndarray], attributes: dict[str, Any]) -> Reference:
-    """The inverse of `reference_dataset`.
+    """The inverse of `reference_arrays`.
 
     Raises:
         KeyError, TypeError, ValueError, DrakegaitError: the arrays or facts are damaged.
@@ -103,11 +99,6 @@ def write_subject(
     Raises:
         BadFile: the file cannot be written.
     """
-    import xarray as xr
-
-    path = Path(path)
-    if path.is_dir():
-        raise BadFile(path, "is a folder, not a file to write.")
     attributes = {
         "title": references[0].name,
         "format": FORMAT,
@@ -115,19 +106,8 @@ def write_subject(
         "subject": _text(None if subject is None else subject.to_dict()),
         "quality": _text(quality),
     }
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        xr.Dataset(attrs=attributes).to_netcdf(beside, engine="h5netcdf")
-        for reference in references:
-            reference_dataset(reference).to_netcdf(
-                beside, mode="a", group=reference.kind, engine="h5netcdf"
-            )
-        os.replace(beside, path)
-    except OSError as error:
-        reason = error.strerror or str(error).splitlines()[0]
-        raise BadFile(path, f"cannot be written ({reason}).") from None
-    finally:
-        beside.unlink(missing_ok=True)
+    groups = {reference.kind: reference_arrays(reference) for reference in references}
+    write_netcdf(path, {ROOT: LabelledArrays(attributes=attributes), **groups})
 
 
 def read_reference(path: str | Path, kind: str | None = None) -> Reference:

@@ -18,7 +18,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.interpolate import make_lsq_spline
 
 from drakegait.errors import InvalidInput
 from drakegait.transcription.splines import PeriodicQuintic
@@ -97,6 +96,8 @@ def fit_periodic(
     coefficients = spline.fit(tau[:-1], values[:, :-1])
     open_curves = gap > CLOSED * extent
     if open_curves.any():
+        from scipy.interpolate import make_lsq_spline  # slow to import, and rarely needed
+
         nodes = np.append(spline.node_times, 1.0)
         knots = np.concatenate([np.zeros(5), nodes, np.ones(5)])
         try:
