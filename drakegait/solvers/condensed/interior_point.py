@@ -31,6 +31,9 @@ _SCALE_MAX = 100.0  # s_max of (5)
 _CORRECTIONS, _CORRECTED = 4, 0.99  # second-order corrections (section 2.4)
 _NARROW = 1e-6  # the barrier parameter at which corners have their own width
 # Full steps that change the cost by less than this part of itself creep, if there are so many.
+# A barrier problem is left when the cost has changed over so many steps by less than this part of
+# the sum of products, mu at each bound.
+_LOOK_BACK, _LITTLE_LEFT, _NEARLY_HELD = 4, 0.01, 0.1
 _LITTLE_CHANGE, _FULL, _CREEPING = 1e-3, 0.95, 2
 
 
@@ -71,6 +74,7 @@ class InteriorPoint:
         self.w = np.concatenate([x, slacks])
         self.barrier, self._last_barrier = barrier, last_barrier
         self._regularisation, self._small_steps = Regularisation(system), 0
+        self._costs: list[float] = []  # with this barrier parameter
         self.multipliers = self._first_multipliers(known)
         program.smoothing = self.smoothing
         self._evaluate()
@@ -164,7 +168,7 @@ class InteriorPoint:
             smaller = factor * self.barrier
         self.barrier = max(self._last_barrier, smaller)
         self._filter.clear()
-        self._small_steps = 0
+        self._small_steps, self._costs = 0, []
         if self.smoothing != self.program.smoothing:
             self.program.smoothing = self.smoothing
             self._evaluate()
@@ -177,6 +181,15 @@ class InteriorPoint:
     def solved_barrier_problem(self) -> bool:
         """Whether the error is small enough for a smaller barrier parameter."""
         return self.errors(self.barrier).worst <= _KAPPA_EPS * self.barrier
+
+    @property
+    def little_left(self) -> bool:
+        """Whether the cost of this barrier problem changes little beside what the barrier adds."""
+        if self.at_last_barrier or len(self._costs) <= _LOOK_BACK or self.violation > _NEARLY_HELD:
+            return False
+        change = abs(self._costs[-1] - self._costs[-1 - _LOOK_BACK])
+        count = np.count_nonzero(self._has_low) + np.count_nonzero(self._has_high)
+        return change < _LITTLE_LEFT * self.barrier * count
 
     def step(self) -> bool:
         """One iteration; False if no acceptable step was found."""
@@ -332,5 +345,6 @@ class InteriorPoint:
             guarded(z.upper + longest * d_high, new_high),
         )
         self._evaluate()
+        self._costs.append(self.cost)
         small = step >= _FULL and abs(self.cost - before) < _LITTLE_CHANGE * abs(before)
         self._small_steps = self._small_steps + 1 if small else 0

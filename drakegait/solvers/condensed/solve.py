@@ -26,7 +26,7 @@ from drakegait.solvers.solution import Solution
 FIRST_BARRIER, WARM_BARRIER = 1e-3, 1e-4
 # Of a start from its bounds, relative. With multipliers the start may stand further off: what
 # is at its bound goes back there in a few steps, and the others move freely.
-_PUSH, _WARM_PUSH, _KNOWN_PUSH = 0.2, 1e-4, 1e-3
+_PUSH, _WARM_PUSH, _KNOWN_PUSH = 0.2, 1e-4, 1e-2
 _LAST_BARRIER = 0.09  # of the tolerance on complementarity
 
 
@@ -80,6 +80,8 @@ def solve_condensed(
         else:
             if settled.reached:
                 method.lower_barrier(settled.FACTOR)
+            elif method.little_left:
+                method.lower_barrier()
             while method.solved_barrier_problem() and not method.at_last_barrier:
                 method.lower_barrier()
             if not method.step():
