@@ -25,7 +25,7 @@ from drakegait.program.hessian_blocks import HEELS, NUM_LATE, HessianBlocks
 from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
 from drakegait.program.local_rows import DenseRows
-from drakegait.solvers.condensed.assembly import Assembly
+from drakegait.solvers.condensed.assembly import Assembly, add_square
 from drakegait.solvers.condensed.local_elimination import LocalElimination
 from drakegait.solvers.condensed.local_variables import LocalVariables, hessian_times
 from drakegait.solvers.condensed.sparse_structure import SparseStructure
@@ -141,12 +141,12 @@ class CondensedSystem:
             weight = np.append(stiffness, 0.0)[numbers] / constraint.scale**2
             if partials.multipliers is not None:
                 contacts = local[:, : feet.NUM_ROWS, : feet.NUM_ROWS]
-                _add_square(contacts, partials.multipliers, weight)
+                add_square(contacts, partials.multipliers, weight)
             if partials.q is not None:
                 rows = elimination.rows_by_shared(
                     partials, constraint.num_rows, blocks.tau_by_time
                 )
-                _add_square(dense, rows, weight)
+                add_square(dense, rows, weight)
         half = np.swapaxes(by_shared, 1, 2) @ (mixed + 0.5 * local @ by_shared)
         dense += half
         dense += np.swapaxes(half, 1, 2)
@@ -156,7 +156,10 @@ class CondensedSystem:
         np.add.at(matrix, (timing.curved_rows, timing.curved_columns), bends)
         np.add.at(matrix, (timing.curved_columns, timing.curved_rows), bends)
         rows = jacobian[self._shared_inequalities][:, :size].toarray()
-        matrix += rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
+        few = np.flatnonzero(rows.any(axis=0))  # timing and placement
+        rows = rows[:, few]
+        square = rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
+        matrix[np.ix_(few, few)] += square
         self._border = jacobian[self._shared_equalities][:, :size].toarray()
         self.matrix = matrix
         self.at = Linearisation(
@@ -293,7 +296,3 @@ class CondensedSystem:
 
 def _small(change: np.ndarray, whole: np.ndarray) -> bool:
     return bool(np.abs(change).max() <= _LAST_CORRECTION * np.abs(whole).max())
-
-
-def _add_square(matrix: np.ndarray, rows: np.ndarray, weight: np.ndarray) -> None:
-    matrix += np.swapaxes(rows, 1, 2) @ (weight[:, :, None] * rows)
