@@ -29,17 +29,16 @@ from drakegait.program.load_penalty import LoadPenalty
 from drakegait.program.local_costs import Deviation, MetabolicCost
 from drakegait.program.local_rows import LocalRows
 from drakegait.program.local_state import LocalState
-from drakegait.program.physical_hessian import LawWeights, PhysicalHessian, physical_hessian
+from drakegait.program.physical_hessian import LawWeights, physical_hessian
 from drakegait.walker.dynamics_curvature import DynamicsCurvature
 
 
 @dataclass(frozen=True)
 class LocalCurvature:
-    """Second derivatives at the control points, and what they were made of."""
+    """Second derivatives at the control points, and how their motion changes with time."""
 
     blocks: HessianBlocks
     directions: Directions
-    physical: PhysicalHessian
 
 
 class LagrangianHessian:
@@ -83,22 +82,12 @@ class LagrangianHessian:
             stiffness: weights w of the rows (num_constraints,) in an interior-point method; for
                 the excitation rows g, w g_x^T g_x is added at no cost. Others are not read.
         """
-        return self.values_and_blocks(x, multipliers, objective, stiffness)[0]
-
-    def values_and_blocks(
-        self,
-        x: np.ndarray,
-        multipliers: np.ndarray,
-        objective: float,
-        stiffness: np.ndarray | None = None,
-    ) -> tuple[np.ndarray, LocalCurvature]:
-        """As `values`, with the blocks at the control points that the entries are made of."""
         program, state = self._program, self._program.state(x)
         curvature = self.local_curvature(state, multipliers, objective, stiffness)
         local = self._local(curvature, objective).ravel()[self._kept]
         timing = program.timing.curvature(multipliers[program.first_timing_row :])
         entries = np.concatenate([local * self._factor, timing])
-        return np.bincount(self._entry, entries, self.num_entries), curvature
+        return np.bincount(self._entry, entries, self.num_entries)
 
     def _local(self, curvature: LocalCurvature, objective: float) -> np.ndarray:
         """Second derivatives by local variables (num, entries)."""
@@ -133,7 +122,7 @@ class LagrangianHessian:
             add_deviation(blocks, costs[Deviation], objective)
         add_friction(blocks, weights)
         add_footprints(blocks, weights)
-        return LocalCurvature(blocks, directions, physical)
+        return LocalCurvature(blocks, directions)
 
     def _weights(self, multipliers: np.ndarray, power: int = 1) -> LawWeights:
         program, padded = self._program, np.append(multipliers, 0.0)
