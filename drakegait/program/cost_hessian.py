@@ -41,9 +41,10 @@ def add_energy_weights(
     by_length = -spans.arms.T @ slopes[:, :, 3:]
     blocks.late_force[..., :3] += first[:, :, None, None] * slopes[:, None, :, :3]
     blocks.late_motion[..., :3] += first[:, :, None, None] * by_length[:, None]
-    along = np.einsum("pma,pdma->pd", slopes[:, :, :3], directions.force)
-    along += np.einsum("pia,pdia->pd", by_length, directions.motion)
-    late = np.einsum("pd,pdl->pl", along, directions.by_late)
+    num = len(first)
+    along = slopes[:, :, :3].reshape(num, 1, -1) @ _flat(directions.force)
+    along += by_length.reshape(num, 1, -1) @ _flat(directions.motion)
+    late = (along @ directions.by_late)[:, 0]
     blocks.late += _both_ways(first, late)
 
 
@@ -74,8 +75,8 @@ def add_deviation(blocks: HessianBlocks, cost: Deviation, objective: float) -> N
     rate = state.formulation.deviation_weight * objective
     period, share = state.stride_time[:, 0], state.share_of_cycle
     factor = rate * share * period
-    motion, force = cost.differences(state)
-    slope, force_slope = cost.differences(state, order=1)
+    motion, force = state.deviation
+    slope, force_slope = state.deviation_slope
     slope = slope + state.motion.by_tau[0]
     wq, wf = cost.coordinate_weight, cost.force_weight
     diagonal = np.arange(motion.shape[1])
@@ -142,6 +143,11 @@ def _on_points(state: LocalState, by_foot: np.ndarray) -> np.ndarray:
 
 def _reactions(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return np.einsum("pfa,fa->p", values, weights)
+
+
+def _flat(directions: np.ndarray) -> np.ndarray:
+    """(num, 3 directions, functions, orders) -> (num, functions * orders, 3)."""
+    return np.swapaxes(directions.reshape(*directions.shape[:2], -1), 1, 2)
 
 
 def _both_ways(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -256,11 +256,12 @@ class GaitProgram:
         """Entries of the Jacobian at `jacobian_rows`, `jacobian_columns`."""
         state = self.state(x)
         parts = [
-            constraint.jacobian(state).ravel()[kept]
+            constraint.jacobian(state).ravel().take(kept)
             for constraint, kept in zip(self.constraints, self._kept, strict=True)
         ]
         parts += [self.timing.jacobian(x), *(r.jacobian(x, self.state) for r in self.stride_rows)]
-        values = np.concatenate(parts) * self._factors
+        values = np.concatenate(parts)
+        values *= self._factors
         if self._distinct:
             return values
         return np.bincount(self._entry, values, self.num_entries)

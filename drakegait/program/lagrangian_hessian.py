@@ -40,7 +40,8 @@ from drakegait.walker.dynamics_curvature import DynamicsCurvature
 
 @dataclass(frozen=True)
 class LocalCurvature:
-    """Second derivatives at the control points, and what they were made of."""
+    """Second derivatives at the control points, how their motion changes with time, and what the
+    former are made of."""
 
     blocks: HessianBlocks
     directions: Directions
@@ -88,22 +89,12 @@ class LagrangianHessian:
             stiffness: weights w of the rows (num_constraints,) in an interior-point method; for
                 the excitation rows g, w g_x^T g_x is added at no cost. Others are not read.
         """
-        return self.values_and_blocks(x, multipliers, objective, stiffness)[0]
-
-    def values_and_blocks(
-        self,
-        x: np.ndarray,
-        multipliers: np.ndarray,
-        objective: float,
-        stiffness: np.ndarray | None = None,
-    ) -> tuple[np.ndarray, LocalCurvature]:
-        """As `values`, with the blocks at the control points that the entries are made of."""
         program, state = self._program, self._program.state(x)
         curvature = self.local_curvature(state, multipliers, objective, stiffness)
         local = self._local(curvature, objective).ravel()[self._kept]
         timing = program.timing.curvature(multipliers[program.first_timing_row :])
         entries = np.concatenate([local * self._factor, timing])
-        return np.bincount(self._entry, entries, self.num_entries), curvature
+        return np.bincount(self._entry, entries, self.num_entries)
 
     def _local(self, curvature: LocalCurvature, objective: float) -> np.ndarray:
         """Second derivatives by local variables (num, entries)."""

@@ -98,7 +98,7 @@ class MetabolicCost(LocalCost):
         tau, stride_time = (part.sum(axis=1) for part in self._chain.timing(state, slopes))
         factor = weight * share * period
         power = self.power(state)
-        by_coordinate = np.einsum("im,pmw->piw", self._by_span, length)
+        by_coordinate = self._by_span @ length
         time = np.empty((num, 4))
         time[:, 0] = factor * stride_time + weight * share * power
         time[:, 1:] = (
@@ -135,25 +135,9 @@ class Deviation(LocalCost):
             pattern = pattern.with_projected_multipliers()
         self.columns = np.nonzero(pattern.local(points.layout)[0])[0]
 
-    def differences(self, state: LocalState, order: int = 0) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates (num, n) and ground reactions (num, 2, 3) minus the reference.
-
-        With `order` 1 minus the reference's slopes by tau alone.
-        """
-        reference, tau = self.formulation.reference, state.tau
-        if order:
-            return (
-                -reference.coordinate_values(tau, derivative=1),
-                -reference.ground_reactions(tau, derivative=1),
-            )
-        return (
-            state.motion.value - reference.coordinate_values(tau),
-            state.ground_reactions - reference.ground_reactions(tau),
-        )
-
     def rate(self, state: LocalState) -> np.ndarray:
         """D, the integrand of (11), at each control point (num,)."""
-        motion, force = self.differences(state)
+        motion, force = state.deviation
         return (motion**2 @ self.coordinate_weight) + np.einsum(
             "pfa,fa->p", force**2, self.force_weight
         )
@@ -164,8 +148,8 @@ class Deviation(LocalCost):
 
     def gradient(self, state: LocalState) -> np.ndarray:
         weight, num = self.formulation.deviation_weight, state.points.num
-        motion, force = self.differences(state)
-        motion_slope, force_slope = self.differences(state, order=1)
+        motion, force = state.deviation
+        motion_slope, force_slope = state.deviation_slope
         by_motion = 2.0 * motion * self.coordinate_weight
         by_force = 2.0 * force * self.force_weight
         tau = (by_motion * motion_slope).sum(axis=1) + (by_force * force_slope).sum(axis=(1, 2))

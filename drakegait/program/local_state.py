@@ -9,53 +9,14 @@ need; `chain` turns partial derivatives into those by local variables.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from drakegait.program.control_points import ControlPoints
 from drakegait.program.formulation import Formulation
+from drakegait.program.physical_quantities import Curve, Dynamics, MultiplierDerivatives
 from drakegait.walker import feet
-
-
-@dataclass(frozen=True)
-class Curve:
-    """Functions of time at the control points, (num, num_functions) each.
-
-    Attributes:
-        value, rate, acceleration: x, x', x'' [per s, per s^2].
-        by_tau: derivatives of those three by tau, stacked (3, num, num_functions).
-    """
-
-    value: np.ndarray
-    rate: np.ndarray
-    acceleration: np.ndarray
-    by_tau: np.ndarray
-
-
-@dataclass(frozen=True)
-class Dynamics:
-    """Residual r of the skeleton under its contact forces, before muscles.
-
-    r = M q'' + k - q_r - C^T lambda, eq. (15), with its partial derivatives; the
-    derivative by the accelerations is the mass matrix.
-    """
-
-    residual: np.ndarray
-    by_q: np.ndarray
-    by_v: np.ndarray
-    mass_matrix: np.ndarray
-
-
-@dataclass(frozen=True)
-class MultiplierDerivatives:
-    """d lambda* of eq. (17) by the motion and the muscle forces, (num, 14, ...)."""
-
-    by_q: np.ndarray
-    by_v: np.ndarray
-    by_a: np.ndarray
-    by_f: np.ndarray
 
 
 class LocalState:
@@ -304,3 +265,23 @@ class LocalState:
         """Integration weight of each control point as part of the stride (num,)."""
         share = np.einsum("pe,pe->p", self.points.weights, self.time[:, 1:4])
         return np.where(self._lost, np.nan, self.formulation.repeats * share)
+
+    # Deviation from the reference -------------------------------------------------------
+
+    @cached_property
+    def deviation(self) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates (num, n) and ground reactions (num, 2, 3) minus the reference."""
+        reference, tau = self.formulation.reference, self.tau
+        return (
+            self.motion.value - reference.coordinate_values(tau),
+            self.ground_reactions - reference.ground_reactions(tau),
+        )
+
+    @cached_property
+    def deviation_slope(self) -> tuple[np.ndarray, np.ndarray]:
+        """Minus the reference's slopes by tau alone."""
+        reference, tau = self.formulation.reference, self.tau
+        return (
+            -reference.coordinate_values(tau, derivative=1),
+            -reference.ground_reactions(tau, derivative=1),
+        )

@@ -35,6 +35,11 @@ from drakegait.walker.muscles import MuscleSet
 NUM_INPUTS = 6
 NUM_OUTPUTS = 3
 
+# One triangle of second derivatives is computed; each place of the matrix in it.
+_LOW = np.tril_indices(NUM_INPUTS)
+_FROM_LOW = np.zeros((NUM_INPUTS, NUM_INPUTS), dtype=int)
+_FROM_LOW[_LOW] = _FROM_LOW.T[_LOW] = np.arange(len(_LOW[0]))
+
 # Length / l_opt beyond which a parallel element pulls (Ackermann & van den Bogert 2010).
 PARALLEL_START = 1.2
 PARALLEL_START_THIGH = 1.4
@@ -177,8 +182,8 @@ class MuscleFunctions:
         weights = np.ascontiguousarray(
             np.broadcast_to(weights, z.shape[:-1] + (NUM_OUTPUTS,)), float
         )
-        (hessian,) = self._curvatures(smoothing, z, weights)
-        return hessian.reshape(hessian.shape[:-1] + (NUM_INPUTS, NUM_INPUTS))
+        (low,) = self._curvatures(smoothing, z, weights)
+        return low.take(_FROM_LOW, axis=-1)
 
     def states(self, z: np.ndarray) -> dict[str, np.ndarray]:
         """Everything about the muscles by the exact, unsmoothed laws.
@@ -247,7 +252,8 @@ class MuscleFunctions:
         c, z, outputs = self._symbols()
         weights = casadi.SX.sym("w", NUM_OUTPUTS)
         hessian, _ = casadi.hessian(casadi.dot(weights, outputs), z)
-        return self._compile([c, z, weights], [hessian])
+        low = casadi.vertcat(*(hessian[i, j] for i, j in zip(*_LOW, strict=True)))
+        return self._compile([c, z, weights], [low])
 
     def _compile(self, inputs: list, outputs: list) -> ColumnwiseFunction:
         outputs = casadi.cse([casadi.densify(output) for output in outputs])

@@ -12,7 +12,7 @@ import scipy.sparse
 
 from drakegait.program.excitation import MuscleChain
 from drakegait.program.gait_program import GaitProgram
-from drakegait.program.hessian_blocks import HessianBlocks
+from drakegait.program.hessian_blocks import NUM_LATE, HessianBlocks
 
 
 class Assembly:
@@ -111,7 +111,7 @@ class Assembly:
         pairs = np.zeros((self._intervals * width, functions, functions))
         beside = np.zeros((self._intervals, late.shape[2]))
         part = np.empty((len(self._forward), functions, functions))
-        own_places = n + np.arange(m)
+        own_part = part.reshape(len(part), -1)[:, n * (functions + 1) :: functions + 1]
         for which, window, place in self._groups:
             count = len(which)
             whole, half = products[which], upper[which]
@@ -119,7 +119,7 @@ class Assembly:
             by_motion = flat @ motion[which].reshape(count * 9, -1)
             part[:, :n, :n] = by_motion.reshape(-1, n, n)
             part[:, n:, n:] = (half[:, 0].T @ force[which]).reshape(-1, m, m)
-            part[:, own_places, own_places] += flat @ own_force[which].reshape(count * 9, -1)
+            own_part += flat @ own_force[which].reshape(count * 9, -1)
             across = whole[:, ::3].reshape(count * 3, -1).T @ meeting[which].reshape(count * 3, -1)
             across[:, span] += whole.reshape(count * 9, -1).T @ crossed[which].reshape(
                 count * 9, -1
@@ -143,3 +143,17 @@ class Assembly:
         by_order[:, :, 0, n:] += dense[..., 3 * n :]
         late = np.swapaxes(self._late_map, 1, 2) @ by_order.reshape(num, dense.shape[1], -1)
         return late.reshape(num, -1, 4, self._functions).transpose(0, 2, 1, 3).reshape(num, 4, -1)
+
+
+def add_square(matrix: np.ndarray, rows: np.ndarray, weight: np.ndarray) -> None:
+    """Add rows^T diag(weight) rows at each control point; rows (num, k, n), weight (num, k)."""
+    matrix += np.swapaxes(rows, 1, 2) @ (weight[:, :, None] * rows)
+
+
+def own_blocks(blocks: HessianBlocks, shared: int) -> np.ndarray:
+    """Blocks by motion and by late unknowns at their places in (num, shared, shared)."""
+    num, n = blocks.motion.shape[:2]
+    out = np.zeros((num, shared, shared))
+    out[:, : 3 * n, : 3 * n] = blocks.motion.reshape(num, 3 * n, 3 * n)
+    out[:, shared - NUM_LATE :, shared - NUM_LATE :] = blocks.late
+    return out

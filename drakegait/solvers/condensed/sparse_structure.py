@@ -19,5 +19,5 @@ class SparseStructure:
 
     def matrix(self, entries: np.ndarray) -> scipy.sparse.csr_array:
         """The matrix with these entries."""
-        data = entries[self._order]
+        data = entries.take(self._order)
         return scipy.sparse.csr_array((data, self._indices, self._starts), shape=self._shape)

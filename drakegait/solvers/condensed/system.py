@@ -12,8 +12,6 @@ Rows of no control point that are equalities (average speed) keep their multipli
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.linalg
 import scipy.sparse
@@ -25,8 +23,9 @@ from drakegait.program.hessian_blocks import HEELS, NUM_LATE, HessianBlocks
 from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
 from drakegait.program.local_rows import DenseRows
-from drakegait.solvers.condensed.assembly import Assembly
+from drakegait.solvers.condensed.assembly import Assembly, add_square, own_blocks
 from drakegait.solvers.condensed.convexity import convex_excess
+from drakegait.solvers.condensed.linearisation import Linearisation
 from drakegait.solvers.condensed.local_elimination import LocalElimination
 from drakegait.solvers.condensed.local_variables import LocalVariables, hessian_times
 from drakegait.solvers.condensed.sparse_structure import SparseStructure
@@ -34,31 +33,6 @@ from drakegait.walker import feet
 
 _ELIMINATED = (EquationsOfMotion, LeastSquaresMultipliers)
 _REFINEMENTS, _LAST_CORRECTION = 3, 1e-7  # at most; of the solution: the next is below 1e-14
-
-
-@dataclass(frozen=True)
-class Linearisation:
-    """Everything that one step needs of the program at one point.
-
-    Attributes:
-        jacobian: of all rows, sparse.
-        blocks, bends: Hessian of the Lagrangian and the excitation rows' stiffness, at the
-            control points and of the timing rows.
-        stiffness: S of all rows, 0 for equalities (num_constraints,).
-        diagonal: the barrier's second derivatives by the unknowns (num_variables,).
-        elimination: of the local unknowns.
-        local, mixed: second derivatives by local unknowns, and by those and the shared ones, with
-            the barrier and the inequality rows (num, 14 + n, 14 + n), (num, 14 + n, shared).
-    """
-
-    jacobian: scipy.sparse.csr_array
-    blocks: HessianBlocks
-    bends: np.ndarray
-    stiffness: np.ndarray
-    diagonal: np.ndarray
-    elimination: LocalElimination
-    local: np.ndarray
-    mixed: np.ndarray
 
 
 class CondensedSystem:
@@ -133,18 +107,18 @@ class CondensedSystem:
         late = by_shared.shape[2] - NUM_LATE
         # Without the shared unknowns' part in the local ones, then with it.
         local, mixed = self._local_hessian(blocks, diagonal), self._mixed_hessian(blocks, late)
-        dense = _own(blocks, by_shared.shape[2])
+        dense = own_blocks(blocks, by_shared.shape[2])
         for constraint, numbers in self._dense_rows:
             partials = constraint.partials(state)
             weight = np.append(stiffness, 0.0)[numbers] / constraint.scale**2
             if partials.multipliers is not None:
                 contacts = local[:, : feet.NUM_ROWS, : feet.NUM_ROWS]
-                _add_square(contacts, partials.multipliers, weight)
+                add_square(contacts, partials.multipliers, weight)
             if partials.q is not None:
                 rows = elimination.rows_by_shared(
                     partials, constraint.num_rows, blocks.tau_by_time
                 )
-                _add_square(dense, rows, weight)
+                add_square(dense, rows, weight)
         half = np.swapaxes(by_shared, 1, 2) @ (mixed + 0.5 * local @ by_shared)
         dense += half
         dense += np.swapaxes(half, 1, 2)
@@ -154,7 +128,10 @@ class CondensedSystem:
         np.add.at(matrix, (timing.curved_rows, timing.curved_columns), bends)
         np.add.at(matrix, (timing.curved_columns, timing.curved_rows), bends)
         rows = jacobian[self._shared_inequalities][:, :size].toarray()
-        matrix += rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
+        few = np.flatnonzero(rows.any(axis=0))  # timing and placement
+        rows = rows[:, few]
+        square = rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
+        matrix[np.ix_(few, few)] += square
         self._border = jacobian[self._shared_equalities][:, :size].toarray()
         self.matrix = matrix
         self._curvature, self._convexifying = curvature, None
@@ -196,7 +173,7 @@ class CondensedSystem:
             excess = convex_excess(curvature.physical.muscles, walker.muscles)
             blocks = self._hessian.muscle_blocks(curvature, excess)
             shared = self.at.elimination.by_shared.shape[2]
-            self._convexifying = self._assembly.matrix(_own(blocks, shared), blocks)
+            self._convexifying = self._assembly.matrix(own_blocks(blocks, shared), blocks)
         return self._convexifying
 
     def factor(self, shift: float, convexity: float = 0.0) -> bool:
@@ -308,18 +285,5 @@ class CondensedSystem:
         return out[:-1]
 
 
-def _own(blocks: HessianBlocks, shared: int) -> np.ndarray:
-    """Blocks by motion and by late unknowns at their places in (num, shared, shared)."""
-    num, n = blocks.motion.shape[:2]
-    out = np.zeros((num, shared, shared))
-    out[:, : 3 * n, : 3 * n] = blocks.motion.reshape(num, 3 * n, 3 * n)
-    out[:, shared - NUM_LATE :, shared - NUM_LATE :] = blocks.late
-    return out
-
-
 def _small(change: np.ndarray, whole: np.ndarray) -> bool:
     return bool(np.abs(change).max() <= _LAST_CORRECTION * np.abs(whole).max())
-
-
-def _add_square(matrix: np.ndarray, rows: np.ndarray, weight: np.ndarray) -> None:
-    matrix += np.swapaxes(rows, 1, 2) @ (weight[:, :, None] * rows)
