@@ -36,6 +36,9 @@ _LOCAL = {
     "distributed.deploy.lost-worker-timeout": "1 day",  # starting can take long, see Place.revive
 }
 _ENDED = ("closed", "failed")
+_NO_WORD = logging.CRITICAL + 1
+"""Level of Dask's loggers. Its scheduler calls a client that has left before it was told that its
+studies are taken back, as after Ctrl-C, critical."""
 
 
 class ClusterLost(DrakegaitError):
@@ -152,7 +155,7 @@ def _started(number: int) -> Iterator[Place]:
                 memory_limit=0,  # the system's limit is enough
                 dashboard_address=None,
                 scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},  # not 8787 for all to see
-                silence_logs=logging.CRITICAL,
+                silence_logs=_NO_WORD,
             )
         except RuntimeError:
             raise ClusterLost(
@@ -201,7 +204,7 @@ def _silence() -> Iterator[None]:
         if logger.level or logger.name == "distributed"  # others do as the one above them
     }
     for logger in levels:
-        logger.setLevel(logging.CRITICAL)
+        logger.setLevel(_NO_WORD)
     try:
         yield
     finally:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import subprocess
 import sys
@@ -67,6 +68,17 @@ def test_a_worker_keeps_to_one_core_and_is_replaced_when_its_keeper_gives_up(mon
     assert found.items() >= cluster.ONE_THREAD.items()
     assert "MALLOC_TRIM_THRESHOLD_" not in found
     assert os.environ["OMP_NUM_THREADS"] == "4" and "OMP_CANCELLATION" not in os.environ
+
+
+def test_dask_says_nothing_while_we_work_and_speaks_again_afterwards(scheduler, caplog):
+    """After Ctrl-C its scheduler finds the client gone, which it calls critical."""
+    log = logging.getLogger("distributed.scheduler")
+    for place in ((1, None), (None, scheduler)):
+        with cluster.connected(*place, 1):
+            log.critical("Closed comm")
+        assert caplog.messages == []
+    log.critical("as before")
+    assert caplog.messages == ["as before"]
 
 
 def test_workers_of_another_version_are_refused(tmp_path, traces, scheduler, monkeypatch):
