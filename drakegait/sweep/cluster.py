@@ -146,9 +146,10 @@ def _started(number: int) -> Iterator[Place]:
     import dask
     from distributed import Client, LocalCluster
 
-    with dask.config.set(_LOCAL), _environment(ONE_THREAD), _silence():
+    with dask.config.set(_LOCAL), _environment(ONE_THREAD), _silence(), _deaf_loop() as loop:
         try:
             cluster = LocalCluster(
+                loop=loop,
                 n_workers=number,
                 threads_per_worker=1,
                 processes=True,
@@ -177,6 +178,30 @@ def leave_if_imported() -> None:
     """
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         sys.exit(1)
+
+
+@contextlib.contextmanager
+def _deaf_loop() -> Iterator[Any]:
+    """Dask's event loop, in a thread that Ctrl-C does not reach, nor the processes it starts.
+
+    A terminal sends Ctrl-C to the workers, too. They are ended by `_kill`; one that was just being
+    started would say, before Dask or we could tell it otherwise, where it was interrupted.
+    """
+    from multiprocessing import resource_tracker
+
+    from distributed.utils import LoopRunner
+
+    resource_tracker.ensure_running()  # later it would make that thread hear again
+    runner = LoopRunner()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        runner.start()  # threads and processes inherit the mask
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    try:
+        yield runner.loop
+    finally:
+        runner.stop()
 
 
 @contextlib.contextmanager
