@@ -158,9 +158,16 @@ def _summarised(summary: dict[str, Any]) -> dict[str, Any]:
 
 
 def measure(row: Row, repeats: int) -> dict[str, Any]:
-    """Medians of the numbers of several runs; words that differ between runs are all kept."""
-    runs = [run(row) for _ in range(repeats)]
+    """Medians of several runs."""
     record: dict[str, Any] = {"command": f"drakegait {row.command}", "runs": repeats}
+    record |= median_of([run(row) for _ in range(repeats)])
+    record["measured"] = datetime.date.today().isoformat()
+    return record
+
+
+def median_of(runs: list[dict[str, Any]]) -> dict[str, Any]:
+    """Medians of the numbers of several runs; words that differ between runs are all kept."""
+    record: dict[str, Any] = {}
     for name, first in runs[0].items():
         values = [each[name] for each in runs if name in each]
         if all(value == first for value in values):
@@ -169,7 +176,6 @@ def measure(row: Row, repeats: int) -> dict[str, Any]:
             record[name] = statistics.median(values)
         else:
             record[name] = " / ".join(map(str, values))
-    record["measured"] = datetime.date.today().isoformat()
     return record
 
 
@@ -297,12 +303,12 @@ def _measured_on(results: dict[str, Any]) -> str:
     )
 
 
-def write_readme(path: Path, text: str) -> None:
+def write_readme(path: Path, text: str, first: str = BEGIN, last: str = END) -> None:
     """Put `text` between the marks of a README file."""
-    head, begin, rest = path.read_text(encoding="utf-8").partition(BEGIN)
-    _, end, tail = rest.partition(END)
+    head, begin, rest = path.read_text(encoding="utf-8").partition(first)
+    _, end, tail = rest.partition(last)
     if not begin or not end:
-        raise SystemExit(f"{path} lacks the marks {BEGIN} and {END}.")
+        raise SystemExit(f"{path} lacks the marks {first} and {last}.")
     path.write_text(f"{head}{begin}\n{text}\n{end}{tail}", encoding="utf-8")
 
 
