@@ -175,6 +175,7 @@ def draw(results: dict[str, Any]) -> None:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import LogLocator
 
     shown = [name for name in QUANTITIES if name != "iterations"]
     style = {"svg.hashsalt": "drakegait", "font.size": 8, "svg.fonttype": "none"}
@@ -191,6 +192,8 @@ def draw(results: dict[str, Any]) -> None:
                         axes.set_xticks(x, [f"{v:.0f}" for v in x], minor=False)
                         axes.legend(frameon=False, fontsize=6.5)
                 axes.minorticks_off()
+                axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+                axes.yaxis.set_major_formatter("{x:g}")
                 axes.set_title(QUANTITIES[quantity], fontsize=8)
                 axes.set_xlabel(over.replace("_", " "))
         figure.savefig(FIGURE, metadata={"Date": None})
