@@ -50,11 +50,15 @@ class Row:
         command: what follows `drakegait`; `{row}` is the folder of another row, which runs first,
             `{out}` that of this one.
         quick: whether it runs when no rows are asked for.
+        goal: wall time that it should take on two cores at most [s]; None: there is no goal.
+        third_of: the row of which it should take a third at most.
     """
 
     name: str
     command: str
     quick: bool = False
+    goal: float | None = None
+    third_of: str | None = None
 
     @property
     def needs(self) -> list[str]:
@@ -72,13 +76,16 @@ ROWS = {
     row.name: row
     for row in (
         Row("help", "--help", quick=True),
-        Row("spatial", "walk --nodes 18", quick=True),
-        Row("planar", "walk --model planar --nodes 18", quick=True),
+        Row("spatial", "walk --nodes 18", quick=True, goal=20.0),
+        Row("spatial-35", "walk --nodes 35", quick=True, goal=90.0),
+        Row("spatial-symmetric", "walk --model spatial-symmetric --nodes 19", quick=True, goal=8.0),
+        Row("planar", "walk --model planar --nodes 18", quick=True, goal=5.0),
+        Row("planar-symmetric-35", "walk --model planar-symmetric --nodes 35", quick=True,
+            goal=5.0),
         Row("planar-symmetric-19", "walk --model planar-symmetric --nodes 19", quick=True),
-        Row("planar-symmetric-35", "walk --model planar-symmetric --nodes 35", quick=True),
-        Row("spatial-35", "walk --nodes 35"),
-        Row("spatial-symmetric", "walk --model spatial-symmetric --nodes 19", quick=True),
-        Row("heavy-foot", "walk --nodes 18 --added-mass foot_r=2.0 --guess {spatial}"),
+        Row("heavy-foot-cold", "walk --nodes 18 --added-mass foot_r=2.0", quick=True),
+        Row("heavy-foot", "walk --nodes 18 --added-mass foot_r=2.0 --guess {spatial}", quick=True,
+            third_of="heavy-foot-cold"),
         Row("spatial-drake", "walk --nodes 18 --solver ipopt"),
         Row("planar-symmetric-35-drake", "walk --model planar-symmetric --nodes 35 --solver ipopt"),
         Row("planar-snopt", "walk --model planar --nodes 18 --solver snopt --time-limit 400"),
@@ -87,7 +94,10 @@ ROWS = {
         Row("figures", "plot {spatial} --out {out}", quick=True),
         Row("replay", "replay {spatial} --html {out}/replay.html", quick=True),
     )
-}
+}  # fmt: skip
+PICTURES = ("figures", "replay")
+PICTURES_GOAL = 6.0
+"""[s] for figures and replay together, here with the start of two commands in it."""
 
 
 # Measuring ---------------------------------------------------------------------------------------
@@ -148,9 +158,16 @@ def _summarised(summary: dict[str, Any]) -> dict[str, Any]:
 
 
 def measure(row: Row, repeats: int) -> dict[str, Any]:
-    """Medians of the numbers of several runs; words that differ between runs are all kept."""
-    runs = [run(row) for _ in range(repeats)]
+    """Medians of several runs."""
     record: dict[str, Any] = {"command": f"drakegait {row.command}", "runs": repeats}
+    record |= median_of([run(row) for _ in range(repeats)])
+    record["measured"] = datetime.date.today().isoformat()
+    return record
+
+
+def median_of(runs: list[dict[str, Any]]) -> dict[str, Any]:
+    """Medians of the numbers of several runs; words that differ between runs are all kept."""
+    record: dict[str, Any] = {}
     for name, first in runs[0].items():
         values = [each[name] for each in runs if name in each]
         if all(value == first for value in values):
@@ -159,7 +176,6 @@ def measure(row: Row, repeats: int) -> dict[str, Any]:
             record[name] = statistics.median(values)
         else:
             record[name] = " / ".join(map(str, values))
-    record["measured"] = datetime.date.today().isoformat()
     return record
 
 
@@ -200,12 +216,16 @@ def store(results: dict[str, Any]) -> None:
 def table(results: dict[str, Any], brief: bool) -> str:
     """The results as Markdown; `brief` for readers who want to know whether to wait."""
     rows = results["rows"]
-    walks = [record for record in rows.values() if "status" in record]
+    walks = [
+        {**record, **_asked(name, rows)} for name, record in rows.items() if "status" in record
+    ]
     others = [record for record in rows.values() if "status" not in record]
     columns: Columns = {
         "walk": lambda row: f"`{row['command'].removeprefix('drakegait ')}`",
         "first iteration [s]": lambda row: _number(row.get("first_iteration_s"), ".1f"),
-        "wall [s]": lambda row: _number(row["wall_s"], ".0f" if row["wall_s"] > 20 else ".1f"),
+        "wall [s]": lambda row: _number(row["wall_s"], ".0f" if row["wall_s"] > 30 else ".1f"),
+        "asked [s]": lambda row: row.get("asked", "-"),
+        "met": lambda row: row.get("met", "-"),
         "iterations": lambda row: _number(row["iterations"], ".0f"),
         "ended": lambda row: row["status"].replace("_", " "),
         "check": lambda row: {True: "passed", False: "not passed"}.get(row.get("passed"), "-"),
@@ -216,7 +236,7 @@ def table(results: dict[str, Any], brief: bool) -> str:
     if brief:
         for name in ("first iteration [s]", "deviation [s]"):
             del columns[name]
-    parts = [_markdown(walks, columns)]
+    parts = [_markdown(walks, columns), _pictures(rows)]
     if not brief:
         named = {"command": lambda row: f"`{row['command']}`"}
         named |= {name: columns[name] for name in ("wall [s]", "memory [MiB]")}
@@ -228,6 +248,33 @@ def table(results: dict[str, Any], brief: bool) -> str:
              "[ms]": lambda row: format(row["value"], ".1f")},
         ))  # fmt: skip
     return "\n\n".join([*filter(None, parts), _measured_on(results)])
+
+
+def _asked(name: str, rows: dict[str, Any]) -> dict[str, str]:
+    """What is asked of a walk, and whether an answer came in that time; empty if nothing is."""
+    row, record = ROWS.get(name), rows[name]
+    if row is None or (row.goal is None and row.third_of not in rows):
+        return {}
+    goal, wall = row.goal, record["wall_s"]
+    met = {True: "yes", False: "no"}
+    answered = record["status"] == "converged" and record.get("passed") is True
+    if goal is not None:
+        return {"asked": f"{goal:g}", "met": met[answered and wall <= goal]}
+    cold = rows[row.third_of]["wall_s"]
+    held = answered and wall <= cold / 3.0
+    return {"asked": f"{cold / 3.0:.1f}, a third of cold", "met": f"{met[held]}, {wall / cold:.2f}"}
+
+
+def _pictures(rows: dict[str, Any]) -> str:
+    """A sentence about figures and replay together, if both were measured."""
+    if not all(name in rows for name in PICTURES):
+        return ""
+    both = sum(rows[name]["wall_s"] for name in PICTURES)
+    met = "met" if both <= PICTURES_GOAL else "not met"
+    return (
+        f"Figures and replay of the first walk, as two commands: {both:.1f} s together; at most "
+        f"{PICTURES_GOAL:g} s are asked: {met}."
+    )
 
 
 def _markdown(rows: list[dict[str, Any]], columns: Columns) -> str:
@@ -256,12 +303,12 @@ def _measured_on(results: dict[str, Any]) -> str:
     )
 
 
-def write_readme(path: Path, text: str) -> None:
+def write_readme(path: Path, text: str, first: str = BEGIN, last: str = END) -> None:
     """Put `text` between the marks of a README file."""
-    head, begin, rest = path.read_text(encoding="utf-8").partition(BEGIN)
-    _, end, tail = rest.partition(END)
+    head, begin, rest = path.read_text(encoding="utf-8").partition(first)
+    _, end, tail = rest.partition(last)
     if not begin or not end:
-        raise SystemExit(f"{path} lacks the marks {BEGIN} and {END}.")
+        raise SystemExit(f"{path} lacks the marks {first} and {last}.")
     path.write_text(f"{head}{begin}\n{text}\n{end}{tail}", encoding="utf-8")
 
 
@@ -286,6 +333,7 @@ def main() -> None:
     quick = [name for name, row in ROWS.items() if row.quick]
     wanted = list(ROWS) if asked.all else asked.rows or quick
     wanted += [need for name in wanted for need in ROWS[name].needs if need not in wanted]
+    wanted += [ROWS[name].third_of for name in wanted if ROWS[name].third_of]
     results = stored()
     # In the order of ROWS a gait comes before those that start from it.
     for row in (row for name, row in ROWS.items() if name in wanted):

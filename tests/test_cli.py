@@ -483,7 +483,9 @@ def test_ctrl_c_saves_the_best_gait(tmp_path):
 def test_ctrl_c_before_the_solve_leaves_nothing(capsys, monkeypatch, tmp_path, wrapped):
     def prepare(_):
         if wrapped:  # what happens while Drake's libraries are loaded
-            raise ImportError("initialization failed") from KeyboardInterrupt()
+            cause = ImportError("initialization failed")
+            cause.__cause__ = KeyboardInterrupt()
+            raise ImportError("of the module that imports it") from cause
         raise KeyboardInterrupt
 
     monkeypatch.setattr(WalkRequest, "prepare", prepare)

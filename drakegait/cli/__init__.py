@@ -55,12 +55,19 @@ def main(arguments: list[str] | None = None) -> None:
     except _COMMAND_LINE_ERROR as error:
         code = _explain(error)
     except ImportError as error:
-        if not isinstance(error.__cause__, KeyboardInterrupt):
+        if not _interrupted(error):
             raise
         code = INTERRUPTED  # while Drake's libraries were loaded
     if code == INTERRUPTED:
         _say("interrupted.")
     sys.exit(code)
+
+
+def _interrupted(error: BaseException | None) -> bool:
+    """Whether Ctrl-C is at the root: a library that was being loaded makes other errors of it."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None
 
 
 def _explain(error: Any) -> int:

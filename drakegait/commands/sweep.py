@@ -43,11 +43,8 @@ def sweep(
                 retry_failed=retry_failed, axes=asked.axes, report=display.report,
             )  # fmt: skip
     except KeyboardInterrupt:
-        done = display.last.done if display.last else 0
-        screen.print(
-            f"Interrupted: {done} finished studies are kept in {folder}. "
-            "The same command goes on from there.", markup=False, soft_wrap=True,
-        )  # fmt: skip
+        text = f"Interrupted: finished studies are kept in {folder}. The same command goes on."
+        screen.print(text, markup=False, soft_wrap=True)
         return INTERRUPTED
     display.show_notes(result.notes)
     _print_end(screen, result)

@@ -13,21 +13,49 @@ from drakegait.paper.verdict import Verdict
 from drakegait.sweep.store import write_bytes
 
 BEGIN, END = "<!-- paper:begin -->", "<!-- paper:end -->"
-ORDER = (Verdict.YES, Verdict.PARTLY, Verdict.UNCLEAR, Verdict.NO, Verdict.NOT_RUN)
+GROUPS = {
+    Verdict.YES: "Hold",
+    Verdict.PARTLY: "Hold in part",
+    Verdict.UNCLEAR: "Ours hardly changes",
+    Verdict.NO: "Do not hold",
+    Verdict.NOT_RUN: "Not known",
+}
+"""Verdicts in the order of the overview, with their headings there."""
+OPEN = "Questions that the paper leaves open"
 
 
 def headline(findings: Sequence[Finding]) -> str:
     """How many of the paper's claims hold, in a sentence."""
     judged = [item for item in findings if item.claim.of_the_paper and item.claim.judge]
-    counts = {verdict: sum(item.verdict is verdict for item in judged) for verdict in ORDER}
+    counts = {verdict: sum(item.verdict is verdict for item in judged) for verdict in GROUPS}
     parts = [f"{verdict.value}: {count}" for verdict, count in counts.items() if count]
     return f"Same direction as the paper in {len(judged)} claims: {', '.join(parts)}."
+
+
+def overview(
+    chapters: Sequence[Chapter], results: Results
+) -> dict[str, list[tuple[Chapter, Finding]]]:
+    """Which claims hold: all findings with their chapters, under the headings of `GROUPS`, and what
+    the paper leaves open under `OPEN`; headings without claims are left out."""
+    found: dict[str, list[tuple[Chapter, Finding]]] = {
+        heading: [] for heading in (*GROUPS.values(), OPEN)
+    }
+    for chapter in chapters:
+        for item in results.findings(chapter):
+            judged = item.claim.of_the_paper and item.claim.judge
+            found[GROUPS[item.verdict] if judged else OPEN].append((chapter, item))
+    return {heading: items for heading, items in found.items() if items}
 
 
 def text(chapters: Sequence[Chapter], results: Results) -> str:
     """The section between the markers, without them."""
     everything = [item for chapter in chapters for item in results.findings(chapter)]
     lines = [headline(everything), "", _made(results), ""]
+    for heading, items in overview(chapters, results).items():
+        lines += [f"**{heading}** ({len(items)}):", ""]
+        lines += [f"- {item.claim.what} ({chapter.title.lower()})" + _in_brief(heading, item)
+                  for chapter, item in items]  # fmt: skip
+        lines.append("")
     for chapter in chapters:
         numbers = results.numbers.get(chapter.name)
         lines += [f"## {chapter.title}", ""]
@@ -63,6 +91,13 @@ def update(path: Path, content: str) -> None:
     before, rest = whole.split(BEGIN)
     after = rest.split(END)[1]
     write_bytes(path, f"{before}{BEGIN}\n{content}{END}{after}".encode())
+
+
+def _in_brief(heading: str, item: Finding) -> str:
+    """Our numbers, where they do not simply say yes."""
+    if heading == OPEN:
+        return f": **{item.verdict.value}**; {item.ours}"
+    return "" if item.verdict is Verdict.YES else f": {item.ours}"
 
 
 def _made(results: Results) -> str:

@@ -110,6 +110,10 @@ CHAPTER = Chapter(
             "3.3 and 5", "fewer iterations",
             *_pairs((BASE, MAXIMUM), (BASE_LM, MAXIMUM_LM), (PROJECTED, PROJECTED_MAXIMUM)),
             "yes: in all three pairs (28) converges and (29) takes more iterations or does not",
+            "Both have the same feasible walks. But a row of (29) has the derivatives of the one "
+            "instant that is worst: they jump where another takes its place, and a step that mends "
+            "one instant says nothing about the others. The table names the law that the last gait "
+            "of each holds least.",
         ),
         Claim(
             "Analytic derivatives save the time of finite differences",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from drakegait.paper.chapter import Chapter
-from drakegait.paper.document import headline
+from drakegait.paper.document import OPEN, headline, overview
 from drakegait.paper.numbers import Missing, Numbers
 from drakegait.paper.results import Results
 from drakegait.paper.verdict import Verdict
@@ -32,6 +32,8 @@ def render(chapters: Sequence[Chapter], results: Results) -> str:
     findings = [item for part in parts for item in part["findings"]]
     return environment.get_template(TEMPLATE).render(
         headline=headline(findings),
+        overview=overview(chapters, results),
+        open=OPEN,
         parts=parts,
         classes=CLASSES,
         made=results.made,

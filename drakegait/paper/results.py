@@ -20,7 +20,7 @@ from drakegait.sweep.store import write_bytes
 FORMAT = "drakegait paper results"
 _COLUMNS = (
     "status", "solver_status", "check_passed", "cost", "cost_of_transport_J_per_m", "deviation_s",
-    "speed_m_per_s", "stride_time_s", "iterations", "wall_time_s", "control_points",
+    "speed_m_per_s", "stride_time_s", "iterations", "wall_time_s", "control_points", "reason",
 )  # fmt: skip
 _DIGITS = 7
 
@@ -79,10 +79,24 @@ class Results:
 
 
 def number_rows(result: SweepResult) -> dict[str, dict[str, Any]]:
-    """The columns of a sweep's table that chapters use, by study."""
+    """The columns of a sweep's table that chapters use, by study, and as `not_held` the law that
+    the last gait of one that failed holds least; None where all hold, or there is no gait."""
     from drakegait.sweep.table import rows
 
-    return {row["study"]: {name: row[name] for name in _COLUMNS} for row in rows(result)}
+    found = {row["study"]: {name: row[name] for name in _COLUMNS} for row in rows(result)}
+    for name, row in found.items():
+        row["not_held"] = _not_held(result, name)
+    return found
+
+
+def _not_held(result: SweepResult, name: str) -> str | None:
+    if name not in result.failures:
+        return None
+    try:
+        worst = result.gait(name).outcome.worst
+    except BadFile:
+        return None
+    return worst[0] if worst else None
 
 
 def _rounded(value: Any) -> Any:

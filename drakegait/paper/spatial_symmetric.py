@@ -12,6 +12,7 @@ SYMMETRIC = "spatial-symmetric 19"
 FREER = "spatial-symmetric 19, w_J 0.1"
 ASIDE = {"hat_list": "degrees", "hat_rotation": "degrees", "hat_y": "m"}
 """Motion of the trunk out of the sagittal plane."""
+_WORDS = {"hat_list": "list", "hat_rotation": "rotation", "hat_y": "sway"}
 SMALL = 0.5
 """Share of the reference's range below which a motion counts as very small."""
 
@@ -39,7 +40,7 @@ def _ours(n: Numbers) -> str:
     for name, unit in ASIDE.items():
         digits = 3 if unit == "m" else 1
         ours, reference = n[f"range of {name}"], n[f"range of {name} in the reference"]
-        text = f"{name} {ours:.{digits}f} of {reference:.{digits}f} {unit}"
+        text = f"{_WORDS[name]} {ours:.{digits}f} of {reference:.{digits}f} {unit}"
         freer = n.found.get(f"range of {name}, w_J 0.1")
         texts.append(text if freer is None else f"{text} ({freer:.{digits}f} with w_J = 0.1)")
     return ", ".join(texts)

@@ -38,7 +38,8 @@ def studies(
     numbers: Numbers, names: Sequence[str], title: str = "Solved", base: str | None = None,
     note: str = "",
 ) -> Table:  # fmt: skip
-    """A row for each study: cost, energy, deviation, iterations, time, and how it ended.
+    """A row for each study: cost, energy, deviation, iterations, time, and how it ended; of one
+    that did not converge the law that its last gait holds least.
 
     Args:
         base: a study; the changes of energy and deviation against it get columns.
@@ -72,5 +73,10 @@ def _ended(row: dict) -> str:
     if not row:
         return "not run"
     if row.get("status") != "done":
-        return str(row.get("solver_status") or "failed").replace("_", " ")
+        ended = row.get("solver_status")
+        if ended is None:  # no gait at all
+            return f"failed: {row.get('reason') or 'for an unknown reason'}"
+        held = row.get("not_held")
+        text = str(ended).replace("_", " ")
+        return f"{text}; does not hold: {held}" if held else text
     return "converged" + ("" if row.get("check_passed") else ", check not passed")

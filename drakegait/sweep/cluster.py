@@ -36,6 +36,9 @@ _LOCAL = {
     "distributed.deploy.lost-worker-timeout": "1 day",  # starting can take long, see Place.revive
 }
 _ENDED = ("closed", "failed")
+_NO_WORD = logging.CRITICAL + 1
+"""Level of Dask's loggers. Its scheduler calls a client that has left before it was told that its
+studies are taken back, as after Ctrl-C, critical."""
 
 
 class ClusterLost(DrakegaitError):
@@ -143,16 +146,17 @@ def _started(number: int) -> Iterator[Place]:
     import dask
     from distributed import Client, LocalCluster
 
-    with dask.config.set(_LOCAL), _environment(ONE_THREAD), _silence():
+    with dask.config.set(_LOCAL), _environment(ONE_THREAD), _silence(), _deaf_loop() as loop:
         try:
             cluster = LocalCluster(
+                loop=loop,
                 n_workers=number,
                 threads_per_worker=1,
                 processes=True,
                 memory_limit=0,  # the system's limit is enough
                 dashboard_address=None,
                 scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},  # not 8787 for all to see
-                silence_logs=logging.CRITICAL,
+                silence_logs=_NO_WORD,
             )
         except RuntimeError:
             raise ClusterLost(
@@ -174,6 +178,30 @@ def leave_if_imported() -> None:
     """
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         sys.exit(1)
+
+
+@contextlib.contextmanager
+def _deaf_loop() -> Iterator[Any]:
+    """Dask's event loop, in a thread that Ctrl-C does not reach, nor the processes it starts.
+
+    A terminal sends Ctrl-C to the workers, too. They are ended by `_kill`; one that was just being
+    started would say, before Dask or we could tell it otherwise, where it was interrupted.
+    """
+    from multiprocessing import resource_tracker
+
+    from distributed.utils import LoopRunner
+
+    resource_tracker.ensure_running()  # later it would make that thread hear again
+    runner = LoopRunner()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        runner.start()  # threads and processes inherit the mask
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    try:
+        yield runner.loop
+    finally:
+        runner.stop()
 
 
 @contextlib.contextmanager
@@ -201,7 +229,7 @@ def _silence() -> Iterator[None]:
         if logger.level or logger.name == "distributed"  # others do as the one above them
     }
     for logger in levels:
-        logger.setLevel(logging.CRITICAL)
+        logger.setLevel(_NO_WORD)
     try:
         yield
     finally:

@@ -15,6 +15,7 @@ from drakegait.solvers.options import SolverOptions
 from drakegait.study import GaitStudy
 from drakegait.sweep import worker
 from drakegait.sweep.cluster import ClusterLost, Place, check_place, connected, leave_if_imported
+from drakegait.sweep.interrupt import Interrupt
 from drakegait.sweep.plan import Plan
 from drakegait.sweep.progress import Stopwatch, SweepProgress
 from drakegait.sweep.result import SweepResult, places
@@ -75,9 +76,10 @@ def sweep(
     with store.locked():
         run = _Run(plan, store, retry_failed, report, _solve)
         if run.open:
-            run.check()
-            with connected(workers, scheduler, len(run.open)) as place:
-                run.solve(place)
+            with run.interrupt:
+                run.check()
+                with connected(workers, scheduler, len(run.open)) as place:
+                    run.solve(place)
         states = {name: store.state(name, key) for name, key in plan.keys.items()}
         result = SweepResult(store.folder, plan.studies, found, states, tuple(run.notes))
         result.save()
@@ -117,6 +119,7 @@ class _Run:
         self._submitted = 0
         self._messages: queue.SimpleQueue[tuple[str, str, str]] = queue.SimpleQueue()
         self._topic = f"drakegait-sweep-{uuid.uuid4().hex}"
+        self.interrupt = Interrupt(lambda: self._messages.put(("interrupted", "", "")))
 
     @property
     def open(self) -> list[str]:
@@ -127,6 +130,7 @@ class _Run:
         """Build what the studies ask for, so that wrong names of muscles show before solving."""
         for name in self.open:
             self.plan.studies[name].replace().formulation()  # the copy takes its walker along
+            self.interrupt.check()
 
     def solve(self, place: Place) -> None:
         """Solve all that is open."""
@@ -139,6 +143,7 @@ class _Run:
             while self._futures:
                 self._tell(place.cores)
                 self._wait(place)
+                self.interrupt.check()
             self._tell(place.cores)
         except OSError:  # of the connection: files raise BadFile
             raise _lost() from None
@@ -150,7 +155,7 @@ class _Run:
             self._let_go(client)
 
     def _wait(self, place: Place) -> None:
-        """Do what the next message asks for, or look around if there is none."""
+        """Do what the next message asks for, if anything, or look around if there is none."""
         try:
             kind, name, key = self._messages.get(timeout=_TICK)
         except queue.Empty:

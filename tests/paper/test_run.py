@@ -8,7 +8,9 @@ import paper_cases as cases
 import pytest
 
 from drakegait.errors import BadFile, UnknownName
-from drakegait.paper import document, page
+from drakegait.paper import document, page, tables
+from drakegait.paper.chapter import Chapter
+from drakegait.paper.claim import Claim
 from drakegait.paper.contents import CHAPTERS
 from drakegait.paper.numbers import Missing, Numbers
 from drakegait.paper.results import Results
@@ -51,6 +53,10 @@ def test_chapters_are_solved_once_and_go_on_where_something_is_missing(tmp_path,
     assert first.numbers["second"].solved("after slow")
     lost = first.numbers["third"].rows["lost"]
     assert (lost["solver_status"], lost["cost"]) == ("infeasible", None)
+    (row,) = tables.studies(first.numbers["third"], ["lost"]).rows
+    assert row[-1] == "infeasible; does not hold: excitation | soleus_l full: off by 3 1/s"
+    (row,) = tables.studies(first.numbers["third"], ["stated"]).rows
+    assert row[-1].startswith("converged")
     assert set(first.gaits) == {"slow", "fast", "after slow", "stated"}
 
     again = go()
@@ -67,6 +73,8 @@ def test_chapters_are_solved_once_and_go_on_where_something_is_missing(tmp_path,
     assert [f.verdict for f in known.findings(cases.FIRST)] == [
         f.verdict for f in first.findings(cases.FIRST)
     ]
+    listed = [item for items in document.overview(chapters, first).values() for item in items]
+    assert len(listed) == len(cases.FIRST.claims) == 2  # each once
     html = page.render(chapters, first)
     assert all(chapter.title in html for chapter in chapters)
     assert "src=" not in html and 'href="http' not in html  # one file, no network
@@ -98,6 +106,27 @@ def test_every_chapter_has_its_program():
     programs = {path.name: path.read_text().splitlines() for path in folder.glob("*.py")}
     assert set(programs) == {chapter.program for chapter in CHAPTERS}
     assert all(len(lines) < 80 for lines in programs.values())
+
+
+def test_the_overview_sorts_claims_by_verdict_and_keeps_own_questions_apart():
+    def chapter(**verdicts: Verdict) -> Chapter:
+        claims = [Claim(what, where, "", lambda n: "7 J/m", judge and (lambda n, v=judge: v))
+                  for what, (where, judge) in verdicts.items()]  # fmt: skip
+        return Chapter(name="a", title="Walks", place="1", about="", claims=tuple(claims))
+
+    walks = chapter(
+        lost=("1", Verdict.NO), kept=("1", Verdict.YES), ours=("-", Verdict.NO),
+        silent=("1", None), little=("1", Verdict.UNCLEAR),
+    )  # fmt: skip
+    found = document.overview([walks], Results({}))
+    assert {head: [item.claim.what for _, item in items] for head, items in found.items()} == {
+        "Hold": ["kept"], "Ours hardly changes": ["little"], "Do not hold": ["lost"],
+        document.OPEN: ["ours", "silent"],
+    }  # fmt: skip
+    text = document.text([walks], Results({}))
+    top = text.split("## Walks")[0]
+    assert "- kept (walks)\n" in top and "- lost (walks): 7 J/m\n" in top
+    assert "- ours (walks): **no**; 7 J/m\n" in top
 
 
 def test_what_was_not_measured_is_not_judged():

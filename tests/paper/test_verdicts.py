@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from drakegait.paper import cost_front, formulation_claims, measures, speeds, verdict
+from drakegait.paper import (
+    cost_front,
+    formulation_claims,
+    measures,
+    speeds,
+    verdict,
+    worn_masses,
+)
 from drakegait.paper.bases import SMALL
 from drakegait.paper.claim import change
 from drakegait.paper.numbers import Missing, Numbers
@@ -67,6 +74,28 @@ def test_a_form_that_does_not_converge_takes_more_iterations_than_one_that_does(
     assert fewer(numbers(("done", 80), ("failed", 50)), "a", "b") is YES
     assert fewer(numbers(("failed", 80), ("done", 50)), "a", "b") is NO
     assert fewer(numbers(("failed", 80), ("failed", 50)), "a", "b") is UNCLEAR
+
+
+def test_the_price_of_a_kilogram_is_the_slope_over_the_masses_that_were_solved():
+    energies = {"planar 18": 300.0, "1 kg waist": 303.0, "2 kg waist": 306.0, "4 kg waist": 312.0}
+    key = "cost_of_transport_J_per_m"
+    rows = {name: {"status": "done", key: energy} for name, energy in energies.items()}
+    numbers = Numbers(rows | {"3 kg waist": {"status": "failed"}})
+    assert worn_masses.price(numbers, "waist") == pytest.approx(3.0)
+    with pytest.raises(Missing, match="right thigh"):
+        worn_masses.price(numbers, "right thigh")
+
+
+def test_masses_are_worn_where_their_names_say():
+    found = worn_masses.studies()
+    assert len(found) == 1 + 5 * 4
+    for kg in (1.0, 2.0, 3.0, 4.0):
+        for place, segments in (
+            ("right foot", ["foot_r"]), ("each foot", ["foot_r", "foot_l"]), ("waist", ["hat"]),
+            ("right shank", ["shank_r"]), ("right thigh", ["thigh_r"]),
+        ):  # fmt: skip
+            worn = found[f"{kg:g} kg {place}"].added_masses
+            assert [(item.segment, item.mass) for item in worn] == [(s, kg) for s in segments]
 
 
 def test_the_knee_is_farthest_from_the_line_between_the_ends():

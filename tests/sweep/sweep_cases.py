@@ -20,7 +20,7 @@ from drakegait.study import GaitStudy
 
 TRACE = "DRAKEGAIT_TEST_TRACE"
 """Environment variable: the folder of the trace and of the gates."""
-DEADLINE = 120.0  # [s]; nothing here takes longer unless it hangs
+DEADLINE = 300.0  # [s]; nothing here takes longer unless it hangs
 
 
 def studies(*speeds: float) -> dict[str, GaitStudy]:

@@ -15,6 +15,7 @@ from sweep_cases import alive, read, studies, trace, wait_for
 from drakegait.gait import Gait
 from drakegait.solve import solve
 from drakegait.sweep import sweep, sweep_file
+from drakegait.sweep.interrupt import Interrupt
 
 pytest.importorskip("distributed")
 
@@ -73,6 +74,35 @@ def test_after_a_kill_the_next_call_goes_on_and_repeats_and_loses_none(tmp_path,
     assert sorted(trace(traces, "end")) == ["1", "1.1", "1.2", "1.3"]
     assert {path: path.stat().st_mtime_ns for path in kept} == before
     assert not list(out.rglob("*.part"))
+
+
+def test_ctrl_c_is_heard_wherever_python_is(tmp_path, traces, scheduler):
+    """Here in a destructor, out of which no exception comes."""
+
+    class Dying:
+        def __del__(self):
+            signal.raise_signal(signal.SIGINT)
+
+    def report(progress):
+        if progress.done == 1:
+            Dying()
+
+    cases.tell(traces, "1.1", "wait")
+    asked, out = studies(1.0, 1.1), tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        sweep(asked, out, scheduler=scheduler, report=report, _solve=cases.solve)
+    (traces / "gate").touch()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert (out / "1" / "summary.json").exists() and not (out / "1.1").exists()
+
+
+def test_a_second_ctrl_c_does_not_wait():
+    with pytest.raises(KeyboardInterrupt), Interrupt(lambda: None):
+        signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        reached = True
+    assert reached
 
 
 @pytest.mark.solve

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -50,10 +52,16 @@ def test_a_scheduler_that_goes_away_ends_the_sweep_and_costs_nothing(
 
 
 def test_a_worker_keeps_to_one_core_and_is_replaced_when_its_keeper_gives_up(monkeypatch):
+    """Neither the first nor its successor hears Ctrl-C; we do."""
+
+    def hears() -> bool:
+        return signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
     pytest.importorskip("distributed")
     monkeypatch.setenv("OMP_NUM_THREADS", "4")
     monkeypatch.delenv("OMP_CANCELLATION", raising=False)
     with cluster.connected(1, None, 1) as place:
+        assert hears() and set(place.client.run(hears).values()) == {False}
         local = place.client.cluster
         local.sync(next(iter(local.workers.values())).close)
 
@@ -63,10 +71,22 @@ def test_a_worker_keeps_to_one_core_and_is_replaced_when_its_keeper_gives_up(mon
 
         cases.wait_for(is_back, "another worker")
         assert place.cores == 1
+        assert hears() and set(place.client.run(hears).values()) == {False}
         (found,) = place.client.run(lambda: dict(os.environ)).values()
     assert found.items() >= cluster.ONE_THREAD.items()
     assert "MALLOC_TRIM_THRESHOLD_" not in found
     assert os.environ["OMP_NUM_THREADS"] == "4" and "OMP_CANCELLATION" not in os.environ
+
+
+def test_dask_says_nothing_while_we_work_and_speaks_again_afterwards(scheduler, caplog):
+    """After Ctrl-C its scheduler finds the client gone, which it calls critical."""
+    log = logging.getLogger("distributed.scheduler")
+    for place in ((1, None), (None, scheduler)):
+        with cluster.connected(*place, 1):
+            log.critical("Closed comm")
+        assert caplog.messages == []
+    log.critical("as before")
+    assert caplog.messages == ["as before"]
 
 
 def test_workers_of_another_version_are_refused(tmp_path, traces, scheduler, monkeypatch):
