@@ -23,9 +23,12 @@ NAMES = {
     COARSE: "symmetric in the plane, 19 nodes",
     FINE: "symmetric in the plane, 35 nodes",
 }
-_WHY = "The coarser the splines, the dearer the walk: compare 19 and 35 nodes. In space the "\
-    "hip abductors of the muscle table saturate, and so do what helps them and what opposes "\
-    "these. Muscles that only brake and hold are charged heat by Umberger's law."
+_WHY = {
+    WALK: "Hip abductors saturate, and what opposes their helpers works too; few nodes.",
+    COARSE: "Few nodes: the coarser the splines, the dearer the walk.",
+    FINE: "Nodes are still few, the reference holds the walk to one stride, and Umberger's law "
+    "charges heat to muscles that hold and brake.",
+}
 
 
 def studies() -> Studies:
@@ -53,7 +56,7 @@ def _line(kind: str, name: str, published: Range, of: Callable[[Numbers, str], f
         return f"{ours:.2f}", published.place([ours]), distance(published, [ours], 2)
 
     return Line(quantity=f"{kind}, {NAMES[name]} [J/(kg m)]", published=published.text(1),
-                source="textbooks", read=read, why=_WHY)  # fmt: skip
+                source="textbooks", read=read, why=_WHY[name])  # fmt: skip
 
 
 SECTION = Section(

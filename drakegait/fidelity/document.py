@@ -47,6 +47,7 @@ def text(sections: Sequence[Section], results: Results, pictures: str = "picture
         if section.tables is not None and numbers is not None:
             for table in section.tables(numbers):
                 lines += [f"**{table.title}**", "", *markdown(table.heads, table.rows), ""]
+                lines += [table.note, ""] if table.note else []
     lines += ["## Sources", ""]
     lines += [f"- **{name}**: {citation}" for name, citation in SOURCES.items()]
     return "\n".join(lines).rstrip() + "\n"

@@ -14,10 +14,9 @@ from drakegait.paper.numbers import Gaits, Numbers
 from drakegait.report.curves import SIDES, GaitCurves
 from drakegait.report.excitations import bursts as published_bursts
 
-_CLOSE = "Little is asked of the muscle there that a cheaper one does not do: nothing in the cost "\
-    "rewards stiffness, safety or readiness, for which people co-contract."
-_HIP = "The hip abductors of the muscle table are weak: they and what helps them are on for as "\
-    "long as one leg stands alone."
+_CLOSE = "Nothing in the cost rewards the stiffness and readiness for which people co-contract."
+_HIP = "Hip abductors are weak: what helps them is on while one leg stands alone."
+_SHARE = "Which part of the gluteal muscles works is decided by small differences of energy."
 _SWING = "Swing is nearly passive in the cheapest walk; people hold the foot up all the time."
 _PUSH = "Push-off is sharper and later: a rigid foot rolls over its toe point."
 
@@ -28,10 +27,10 @@ MUSCLES = {
     f"hold the knee. {_CLOSE}",
     "hamstrings": f"Ours brake the swinging leg and let go; gluteus maximus holds the hip in "
     f"loading. {_CLOSE}",
-    "gluteus_maximus_lateral": f"{_HIP} {_CLOSE}",
-    "gluteus_maximus_medial": _CLOSE,
-    "gluteus_medius_anterior": _HIP,
-    "gluteus_medius_posterior": _HIP,
+    "gluteus_maximus_lateral": f"{_HIP} {_SHARE}",
+    "gluteus_maximus_medial": f"It brakes the leg with the hamstrings before heel strike. {_SHARE}",
+    "gluteus_medius_anterior": f"Its posterior part and gluteus maximus take its load. {_SHARE}",
+    "gluteus_medius_posterior": f"{_HIP} {_SHARE}",
     "iliopsoas": "Rectus femoris, tensor fasciae latae and the stretched tissues of the hip pull "
     "the leg through as well; where these suffice, iliopsoas stays silent.",
     "gastrocnemius": f"{_PUSH} {_CLOSE}",

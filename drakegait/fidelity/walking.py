@@ -20,15 +20,13 @@ WALK = "spatial"
 _SAMPLES = 401
 _WINTER, _ADULT, _BOOKS = "Winter 1991", "one adult", "textbooks"
 
-_SPEED = "Ours walks at 1.2 m/s, the published numbers are of 1.33 m/s: slower walking has longer "\
-    "strides in time, longer stance and lower peaks."
-_REFERENCE = "The walk is held close to the embedded stride, that of one adult."
-_FOOT = "The foot is one rigid piece without a toe joint: it rolls over two points."
-_ABDUCTORS = "The hip abductors of the muscle table are weak and saturate; trunk and pelvis are "\
-    "one piece, so that the pelvis cannot drop."
-_IMPACT = "Feet land without impact, and no row asks for the shape of the force."
-_COARSE = "18 nodes smooth short peaks away or overshoot them."
-_SHARING = "Nothing but energy and the distance from the reference chooses between joints."
+_SPEED = "Slower than the published walks, 1.2 against 1.33 m/s."
+_REFERENCE = "Held close to the embedded stride, that of one adult."
+_FOOT = "A rigid foot without a toe joint: it rolls over two points."
+_ABDUCTORS = "Hip abductors are weak and saturate; the pelvis cannot drop beside the trunk."
+_IMPACT = "Feet land without impact."
+_COARSE = "18 nodes smooth short peaks away or overshoot."
+_SHARING = "Only energy and the distance from the reference choose between joints."
 
 
 def studies() -> Studies:
