@@ -137,7 +137,7 @@ def test_no_committed_file_names_a_registry():
     assert not named
 
 
-@pytest.mark.parametrize("name", ["run.txt", "test.txt"])
+@pytest.mark.parametrize("name", ["run.txt", "test.txt", "docs.txt"])
 def test_every_pinned_package_has_hashes_and_no_address(name):
     text = (ROOT / "requirements" / name).read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
