@@ -80,7 +80,9 @@ def test_every_output_has_its_page_and_every_page_its_output(monkeypatch):
 
     shown = {(program.name, program.page) for program in guide.RUNS if program.page is not None}
     marker = re.compile(r"<!-- output:(\w+):begin -->")
-    marked = {(name, path.name) for path in PAGES for name in marker.findall(path.read_text("utf-8"))}
+    marked = {
+        (name, path.name) for path in PAGES for name in marker.findall(path.read_text("utf-8"))
+    }
     assert shown == marked
     assert all((DOCS / "pictures" / f"{name}.png").is_file() for name in guide.PICTURES)
 
