@@ -34,6 +34,6 @@ def picture_of(page: Path, window: tuple[int, int], folder: Path) -> Image.Image
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         flags.append("--no-sandbox")  # Chromium's own refuses to run for root
     subprocess.run(
-        [browser(), *flags, page.as_uri()], check=True, timeout=120, stderr=subprocess.DEVNULL
+        [browser(), *flags, page.as_uri()], check=True, timeout=300, stderr=subprocess.DEVNULL
     )
     return Image.open(picture).convert("RGB")

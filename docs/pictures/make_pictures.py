@@ -6,7 +6,8 @@
 
 The guide's programs run in the folder that is given, some minutes. What they print replaces what
 is between the markers in docs/*.md; what they draw becomes a picture here. `--keep` runs only what
-has not run there yet. The figures of docs/fidelity.md are `drakegait fidelity --docs docs`.
+has not run there yet, `--only NAME` one part. `drakegait fidelity --docs docs` makes the figures of
+docs/fidelity.md.
 
 Chromium or Chrome must be installed.
 """
@@ -18,7 +19,7 @@ import tempfile
 from pathlib import Path
 
 from browser import picture_of
-from guide import PICTURES, RUNS, guide_output, run
+from guide import PICTURES, RUNS, Program, guide_output, run
 from PIL import Image
 
 from drakegait import Gait, compare, plot, replay
@@ -76,22 +77,25 @@ def make_readme(gait: Gait, folder: Path) -> None:
     save(replay_picture(gait, folder), "replay", colours=None)
 
 
-def make_guide(runs: Path, keep: bool, folder: Path) -> None:
-    """Run the programs of the guide, put down what they print and draw."""
-    for program in RUNS:
-        printed = run(program, runs, keep)
-        if program.page is not None:
-            begin, end = (f"<!-- output:{program.name}:{word} -->" for word in ("begin", "end"))
-            update(DOCS / program.page, guide_output(program, printed), begin, end)
+def make_part(program: Program, runs: Path, keep: bool, folder: Path) -> None:
+    """Run a program of the guide; put down what it prints and draws."""
+    printed = run(program, runs, keep)
+    if program.page is not None:
+        begin, end = (f"<!-- output:{program.name}:{word} -->" for word in ("begin", "end"))
+        update(DOCS / program.page, guide_output(program, printed), begin, end)
     for name, file in PICTURES.items():
-        save(Image.open(runs / file), name)
-    first = Gait.load(runs / "first_walk" / "gait.nc")
-    save(replay_picture(first, folder), "first_walk_replay")
-    quality = runs / "own_data" / "subject_quality.html"
-    save(picture_of(quality, (1100, 1250), folder), "own_data_quality", colours=64)
-    heavy = runs / "heavy_foot"
-    gaits = [Gait.load(heavy / "normal.nc"), Gait.load(heavy / "heavy.nc")]
-    save(compare_picture(gaits, ["no weight", "2 kg on the right foot"], folder), "compare", 64)
+        if file.startswith(f"{program.name}/"):
+            save(Image.open(runs / file), name)
+    out = runs / program.name
+    if program.name == "first_walk":
+        save(replay_picture(Gait.load(out / "gait.nc"), folder), "first_walk_replay")
+    elif program.name == "own_data":
+        page = out / "subject_quality.html"
+        save(picture_of(page, (1100, 1250), folder), "own_data_quality", colours=64)
+    elif program.name == "heavy_foot":
+        gaits = [Gait.load(out / "normal.nc"), Gait.load(out / "heavy.nc")]
+        labels = ["no weight", "2 kg on the right foot"]
+        save(compare_picture(gaits, labels, folder), "compare", colours=64)
 
 
 def main() -> None:
@@ -100,6 +104,7 @@ def main() -> None:
     parser.add_argument("--walk", type=Path, help="a gait.nc, or the folder that holds it")
     parser.add_argument("--guide", type=Path, help="folder in which the examples run")
     parser.add_argument("--keep", action="store_true", help="use what has run there earlier")
+    parser.add_argument("--only", choices=[p.name for p in RUNS], help="one part of the guide")
     given = parser.parse_args()
     if given.walk is None and given.guide is None:
         parser.error("give --walk, --guide or both")
@@ -108,7 +113,9 @@ def main() -> None:
             path = given.walk / "gait.nc" if given.walk.is_dir() else given.walk
             make_readme(Gait.load(path), Path(name))
         if given.guide is not None:
-            make_guide(given.guide.resolve(), given.keep, Path(name))
+            for program in RUNS:
+                if given.only in (None, program.name):
+                    make_part(program, given.guide.resolve(), given.keep, Path(name))
 
 
 if __name__ == "__main__":
