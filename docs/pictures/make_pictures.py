@@ -91,11 +91,11 @@ def make_part(program: Program, runs: Path, keep: bool, folder: Path) -> None:
         save(replay_picture(Gait.load(out / "gait.nc"), folder), "first_walk_replay")
     elif program.name == "own_data":
         page = out / "subject_quality.html"
-        save(picture_of(page, (1100, 1250), folder), "own_data_quality", colours=64)
+        save(picture_of(page, (1100, 1250), folder), "own_data_quality")
     elif program.name == "heavy_foot":
         gaits = [Gait.load(out / "normal.nc"), Gait.load(out / "heavy.nc")]
         labels = ["no weight", "2 kg on the right foot"]
-        save(compare_picture(gaits, labels, folder), "compare", colours=64)
+        save(compare_picture(gaits, labels, folder), "compare")
 
 
 def main() -> None:
