@@ -45,7 +45,7 @@ bench: $(VENV)/test.stamp
 
 # The guide, from docs/ and mkdocs.yml; strict: a page or link that is missing is an error.
 docs: $(VENV)/docs.stamp
-	NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict
 	@echo "out/site/index.html"
 
 lint: $(VENV)/test.stamp
