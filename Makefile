@@ -3,6 +3,7 @@
 #   make walk      solve the default study; results in out/walk
 #   make test      the tests (minutes)        make test-all   with the slow ones
 #   make bench     what is fast               make clean      remove what make made
+#   make docs      the guide as a site, in out/site
 #
 # The environment .venv is made from the pinned files in requirements/ and made again when they or
 # pyproject.toml change. Another Python: make test PYTHON=python3.13 VENV=.venv-3.13
@@ -20,7 +21,7 @@ PYTEST := OMP_NUM_THREADS=1 MPLBACKEND=Agg $(PY) -m pytest -n $(JOBS) --dist loa
 # Drake's IPOPT factorises with SPRAL, which asks for this before the first import.
 export OMP_CANCELLATION := TRUE
 
-.PHONY: help walk test test-quick test-all bench lint lock clean
+.PHONY: help walk test test-quick test-all bench docs lint lock clean
 
 help:
 	@sed -n 's/^# \{0,1\}//p;/^$$/q' Makefile
@@ -41,6 +42,11 @@ test-all: $(VENV)/test.stamp
 bench: $(VENV)/test.stamp
 	$(PY) benchmarks/walks.py --repeats 3 $(ARGS)
 	$(PY) benchmarks/evaluation.py
+
+# The guide, from docs/ and mkdocs.yml; strict: a page or link that is missing is an error.
+docs: $(VENV)/docs.stamp
+	NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict
+	@echo "out/site/index.html"
 
 lint: $(VENV)/test.stamp
 	$(PY) -m ruff check .
@@ -65,7 +71,12 @@ $(VENV)/run.stamp: pyproject.toml requirements/run.txt
 	    "(Debian and Ubuntu: apt-get install libglib2.0-0)"; exit 1; }
 	@touch $@
 
-$(VENV)/test.stamp: $(VENV)/run.stamp requirements/test.txt
+$(VENV)/docs.stamp: $(VENV)/run.stamp requirements/docs.txt
+	@$(PIP) --require-hashes -r requirements/docs.txt
+	@touch $@
+
+# The tests build the site too.
+$(VENV)/test.stamp: $(VENV)/docs.stamp requirements/test.txt
 	@$(PIP) --require-hashes -r requirements/test.txt
 	@touch $@
 
@@ -79,6 +90,7 @@ lock: $(VENV)/run.stamp
 	@$(PIP) uv
 	$(LOCK) --output-file requirements/run.txt
 	$(LOCK) --extra test --constraint requirements/run.txt --output-file requirements/test.txt
+	$(LOCK) --extra docs --constraint requirements/test.txt --output-file requirements/docs.txt
 
 clean:
 	rm -rf .venv .venv-* out build dist .pytest_cache .hypothesis .ruff_cache

@@ -35,7 +35,7 @@ MAY_IMPORT = {
 }
 # Parts that start a solve. All others (gait, check, report, replay and their helpers) read a
 # finished gait and need no solver, only the record of how the solve ended.
-SOLVING = {"__init__", "cli", "commands", "paper", "solve", "sweep"}
+SOLVING = {"__init__", "cli", "commands", "fidelity", "paper", "solve", "sweep"}
 SOLVER_RECORD = "drakegait.solvers.outcome"
 SOLVER_LIBRARIES = ("drakegait.solvers", "pydrake.solvers", "ipyopt")
 # The judges of a gait evaluate it on their own and do not look at the rows of the program.
@@ -138,7 +138,7 @@ def test_no_committed_file_names_a_registry():
     assert not named
 
 
-@pytest.mark.parametrize("name", ["run.txt", "test.txt"])
+@pytest.mark.parametrize("name", ["run.txt", "test.txt", "docs.txt"])
 def test_every_pinned_package_has_hashes_and_no_address(name):
     text = (ROOT / "requirements" / name).read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]

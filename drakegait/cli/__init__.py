@@ -17,13 +17,23 @@ from typing import Any
 
 import typer
 
-from drakegait.cli import compare, export, import_, look, paper, sensitivities, sweep, walk
+from drakegait.cli import (
+    compare,
+    export,
+    fidelity,
+    import_,
+    look,
+    paper,
+    sensitivities,
+    sweep,
+    walk,
+)
 from drakegait.cli.app import app
 from drakegait.errors import DrakegaitError
 
 __all__ = [
-    "app", "compare", "export", "import_", "look", "main", "paper", "sensitivities", "sweep",
-    "walk",
+    "app", "compare", "export", "fidelity", "import_", "look", "main", "paper", "sensitivities",
+    "sweep", "walk",
 ]  # fmt: skip
 
 BAD_INPUT, INTERRUPTED = 2, 130

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drakegait.commands.screen import console
-from drakegait.commands.sweep import SweepDisplay
+from drakegait.commands.stages import Stages
 from drakegait.errors import BadFile, InvalidInput
 from drakegait.paper import document, page
 from drakegait.paper.chapter import Chapter
@@ -18,7 +18,6 @@ from drakegait.paper.contents import CHAPTERS
 from drakegait.paper.results import Results
 from drakegait.paper.run import chapter_named, run
 from drakegait.paper.verdict import Verdict
-from drakegait.sweep.progress import SweepProgress
 from drakegait.sweep.store import write_bytes
 
 INTERRUPTED = 130
@@ -39,7 +38,7 @@ def paper(
     if docs is not None:
         _check_docs(Path(docs), only)
     folder, screen = Path(out).expanduser(), console()
-    stages = _Stages(screen)
+    stages = Stages(screen)
     try:
         results = run(
             chapters, folder / SOLVES, workers=workers, scheduler=scheduler,
@@ -68,32 +67,6 @@ def _check_docs(folder: Path, only: Sequence[str]) -> None:
         raise InvalidInput("--docs", str(folder), "given without --only, as it holds all chapters")
     if not (folder / "paper.md").is_file():
         raise BadFile(folder / "paper.md", "is not there; --docs is the folder that has it.")
-
-
-class _Stages:
-    """A display for each sweep, with its notes and a heading."""
-
-    def __init__(self, screen: Console):
-        self._screen = screen
-        self._display: SweepDisplay | None = None
-
-    def begin(self, sentence: str) -> None:
-        """Another sweep begins."""
-        self.end()
-        self._screen.print(sentence, markup=False, soft_wrap=True)
-        self._display = SweepDisplay(self._screen)
-        self._display.__enter__()
-
-    def report(self, progress: SweepProgress) -> None:
-        """Show how far it is."""
-        if self._display is not None:
-            self._display.report(progress)
-
-    def end(self) -> None:
-        """The sweep has ended."""
-        if self._display is not None:
-            self._display.__exit__(None, None, None)
-            self._display = None
 
 
 def _print(screen: Console, chapters: Sequence[Chapter], results: Results) -> None:

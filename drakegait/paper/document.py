@@ -50,7 +50,7 @@ def overview(
 def text(chapters: Sequence[Chapter], results: Results) -> str:
     """The section between the markers, without them."""
     everything = [item for chapter in chapters for item in results.findings(chapter)]
-    lines = [headline(everything), "", _made(results), ""]
+    lines = [headline(everything), "", made(results), ""]
     for heading, items in overview(chapters, results).items():
         lines += [f"**{heading}** ({len(items)}):", ""]
         lines += [f"- {item.claim.what} ({chapter.title.lower()})" + _in_brief(heading, item)
@@ -61,7 +61,7 @@ def text(chapters: Sequence[Chapter], results: Results) -> str:
         lines += [f"## {chapter.title}", ""]
         place = f"Paper: {chapter.place}. " if chapter.place != "-" else ""
         lines += [f"{place}{chapter.about} Program: `examples/paper/{chapter.program}`.", ""]
-        lines += _markdown(
+        lines += markdown(
             ("claim", "where", "paper", "ours", "same direction", "why they differ"),
             [
                 (item.claim.what, item.claim.where, item.claim.paper or "no number", item.ours,
@@ -74,23 +74,23 @@ def text(chapters: Sequence[Chapter], results: Results) -> str:
         lines += [f"- {claim.what}: {claim.rule}." for claim in rules]
         if chapter.tables is not None and numbers is not None:
             for table in chapter.tables(numbers):
-                lines += ["", f"**{table.title}**", "", *_markdown(table.heads, table.rows)]
+                lines += ["", f"**{table.title}**", "", *markdown(table.heads, table.rows)]
                 lines += ["", table.note] if table.note else []
         lines.append("")
     return "\n".join(lines).rstrip() + "\n"
 
 
-def update(path: Path, content: str) -> None:
+def update(path: Path, content: str, begin: str = BEGIN, end: str = END) -> None:
     """Put the section between the markers of a file that has them; raises BadFile."""
     try:
         whole = path.read_text(encoding="utf-8")
     except OSError as error:
         raise BadFile(path, f"cannot be read ({error.strerror or error}).") from None
-    if whole.count(BEGIN) != 1 or whole.count(END) != 1 or whole.index(END) < whole.index(BEGIN):
-        raise BadFile(path, f"lacks the lines {BEGIN} and {END}, in this order.")
-    before, rest = whole.split(BEGIN)
-    after = rest.split(END)[1]
-    write_bytes(path, f"{before}{BEGIN}\n{content}{END}{after}".encode())
+    if whole.count(begin) != 1 or whole.count(end) != 1 or whole.index(end) < whole.index(begin):
+        raise BadFile(path, f"lacks the lines {begin} and {end}, in this order.")
+    before, rest = whole.split(begin)
+    after = rest.split(end)[1]
+    write_bytes(path, f"{before}{begin}\n{content}{end}{after}".encode())
 
 
 def _in_brief(heading: str, item: Finding) -> str:
@@ -100,18 +100,21 @@ def _in_brief(heading: str, item: Finding) -> str:
     return "" if item.verdict is Verdict.YES else f": {item.ours}"
 
 
-def _made(results: Results) -> str:
-    made = results.made
-    if not made:
+def made(results: Results) -> str:
+    """When, where and with what the run was made, in a sentence; empty if not known."""
+    facts = results.made
+    if not facts:
         return ""
-    versions = made.get("versions", {})
+    versions = facts.get("versions", {})
     named = ", ".join(f"{name} {versions[name]}" for name in ("drakegait", "drake", "casadi")
                       if name in versions)  # fmt: skip
-    place = f"{made.get('cores')} cores ({made.get('system')})"
-    return f"Run of {made.get('date')} on {place}: {named}."
+    place = f"{facts.get('cores')} cores ({facts.get('system')})"
+    return f"Run of {facts.get('date')} on {place}: {named}."
 
 
-def _markdown(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+def markdown(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """The lines of a table."""
+
     def line(cells: Sequence[str]) -> str:
         return "| " + " | ".join(cell.replace("|", "\\|") or " " for cell in cells) + " |"
 

@@ -55,26 +55,30 @@ class Results:
         """A chapter's claims, judged; by nothing if it was not run."""
         return chapter.findings(self.numbers.get(chapter.name, Numbers()))
 
-    def save(self, path: Path) -> None:
-        """Write the numbers, and nothing else, as JSON; raises BadFile."""
+    def save(self, path: Path, format: str = FORMAT) -> None:
+        """Write the numbers, and nothing else, as JSON; raises BadFile.
+
+        Args:
+            format: what the file says it is.
+        """
         chapters = {
             name: {"rows": _rounded(item.rows), "found": _rounded(item.found)}
             for name, item in self.numbers.items()
         }
-        content = {"format": FORMAT, "made": dict(self.made), "chapters": chapters}
+        content = {"format": format, "made": dict(self.made), "chapters": chapters}
         write_bytes(path, (json.dumps(content, indent=1, allow_nan=False) + "\n").encode())
 
     @classmethod
-    def load(cls, path: Path) -> Results:
-        """What `save` has written; raises BadFile for any other file."""
+    def load(cls, path: Path, format: str = FORMAT) -> Results:
+        """What `save` has written with this format; raises BadFile for any other file."""
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
-            if content["format"] != FORMAT:
-                raise KeyError(FORMAT)
+            if content["format"] != format:
+                raise KeyError(format)
             numbers = {name: Numbers(item["rows"], item["found"])
                        for name, item in content["chapters"].items()}  # fmt: skip
         except (OSError, ValueError, KeyError, TypeError) as error:
-            raise BadFile(path, f"holds no results of `drakegait paper` ({error}).") from None
+            raise BadFile(path, f"holds no {format} ({error}).") from None
         return cls(numbers, {}, content.get("made", {}))
 
 
