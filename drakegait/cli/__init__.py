@@ -15,13 +15,13 @@ from typing import Any
 
 import typer
 
-from drakegait.cli import compare, export, import_, look, paper, sensitivities, sweep, walk
+from drakegait.cli import compare, explain, export, import_, look, paper, sensitivities, sweep, walk
 from drakegait.cli.app import app
 from drakegait.errors import DrakegaitError
 
 __all__ = [
-    "app", "compare", "export", "import_", "look", "main", "paper", "sensitivities", "sweep",
-    "walk",
+    "app", "compare", "explain", "export", "import_", "look", "main", "paper", "sensitivities",
+    "sweep", "walk",
 ]  # fmt: skip
 
 BAD_INPUT, INTERRUPTED = 2, 130
@@ -47,7 +47,7 @@ def main(arguments: list[str] | None = None) -> None:
         _say(str(error))
         code = BAD_INPUT
     except _COMMAND_LINE_ERROR as error:
-        code = _explain(error)
+        code = _refused(error)
     except ImportError as error:
         if not isinstance(error.__cause__, KeyboardInterrupt):
             raise
@@ -57,7 +57,7 @@ def main(arguments: list[str] | None = None) -> None:
     sys.exit(code)
 
 
-def _explain(error: Any) -> int:
+def _refused(error: Any) -> int:
     """Print a refused option in one sentence."""
     if not str(error.format_message()):  # `drakegait` alone: Typer has shown the help
         return BAD_INPUT

@@ -119,6 +119,10 @@ def walk(
     seed: Annotated[int, option(
         "--seed", panel=_WAY, metavar="N", parser=whole("--seed"),
         help="Seed of the noise of --starts.")] = 0,
+    explain: Annotated[bool, option(
+        "--explain/--no-explain", panel=_WAY,
+        help="Where no walk is found, tell which laws are in conflict, where, and what would help; "
+        "takes up to 5 minutes, within --time-limit.")] = True,
     out: Annotated[str, option(
         "--out", panel=_FILES, metavar="DIR",
         help="Folder for gait.nc, summary.json, figures/ and replay.html.")] = "out/walk",

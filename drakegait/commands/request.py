@@ -57,6 +57,7 @@ class WalkRequest:
     no_pictures: bool
     starts: int = 1
     seed: int = 0
+    explain: bool = True
     weakness: Texts = None
     contracture: Texts = None
     spasticity: Texts = None

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 from rich.console import Console
 
+from drakegait.commands.explain import EXPLAINED_STATUSES, EXPLANATION, explain_gait
 from drakegait.commands.gait_files import (
     FIGURES_FOLDER,
     GAIT_FILE,
@@ -22,18 +24,22 @@ from drakegait.commands.screen import (
     print_starts,
     quiet_drake,
 )
+from drakegait.errors import InvalidInput
 from drakegait.gait import Gait
+from drakegait.infeasibility.explanation import Explanation
 from drakegait.solve import solve
 from drakegait.study import GaitStudy
 
 NOT_CONVERGED = 3
+EXPLAIN_LIMIT = 300.0  # [s] for the explanation of a walk that was not found
+_LEAST_EXPLAIN = 5.0  # [s] below which it is not begun
 
 
 def walk(request: WalkRequest) -> int:
     """Solve what is asked, save and show it; returns the exit code."""
     study, options, guess = request.prepare()
     folder = writable_folder(request.out)
-    screen = console()
+    screen, started = console(), time.monotonic()
     screen.print(f"{_who(study)}. Ctrl-C ends with the best gait so far.", markup=False)
     with ProgressDisplay(screen) as display:
         gait = solve(
@@ -41,11 +47,17 @@ def walk(request: WalkRequest) -> int:
             seed=request.seed, report=display.report,
         )  # fmt: skip
     gait.save(folder / GAIT_FILE)
-    write_summary(gait.summary(), folder / SUMMARY_FILE)
+    summary = gait.summary()
+    write_summary(summary, folder / SUMMARY_FILE)
     if gait.report is not None:
         print_report(screen, gait.report)
     print_starts(screen, gait.outcome)
     _print_end(screen, gait)
+    if request.explain and gait.outcome.status in EXPLAINED_STATUSES:
+        spent = time.monotonic() - started
+        found = _explain(screen, gait, folder, options.time_limit - spent)
+        if found is not None:
+            write_summary({**summary, EXPLANATION: found.to_dict()}, folder / SUMMARY_FILE)
     files = [GAIT_FILE, SUMMARY_FILE]
     if request.no_pictures:
         _warn_of_old_pictures(screen, folder)
@@ -91,6 +103,19 @@ def _print_end(screen: Console, gait: Gait) -> None:
     )
     for line in lines:
         screen.print(line, markup=False, soft_wrap=True)
+
+
+def _explain(screen: Console, gait: Gait, folder: Path, left: float) -> Explanation | None:
+    """Why no walk was found, as far as the time allows; None if it could not be asked."""
+    limit = min(EXPLAIN_LIMIT, left)
+    if limit < _LEAST_EXPLAIN:
+        screen.print("No time is left to explain it: drakegait explain does.", markup=False)
+        return None
+    try:
+        return explain_gait(screen, gait, folder, limit)
+    except InvalidInput as error:
+        screen.print(f"Not explained: {error}", markup=False, soft_wrap=True)
+        return None
 
 
 def _pictures(screen: Console, gait: Gait, folder: Path) -> list[str]:

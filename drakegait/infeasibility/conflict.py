@@ -16,7 +16,7 @@ import numpy as np
 
 from drakegait.errors import InvalidInput
 from drakegait.infeasibility.elastic import ElasticHessian, ElasticProgram
-from drakegait.infeasibility.laws import Law, laws_of
+from drakegait.infeasibility.laws import laws_of
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_values
 from drakegait.solvers.monitor import Monitor

@@ -1,0 +1,77 @@
+"""Where a law breaks: joint, direction, instant, and the muscles at their limit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from infeasibility_cases import relaxation_of
+
+from drakegait.infeasibility.conflict import Relaxed
+from drakegait.infeasibility.place import Place, place_of
+
+
+def broken(law: str, row_name: str, amount: float) -> Place:
+    """The place where one row of the reference walk breaks `law` by `amount` units."""
+    relaxation = relaxation_of("weak")
+    elastic = relaxation.elastic
+    missing = np.zeros(len(elastic.ends))
+    missing[[elastic.row_names[i] for i in elastic.ends].index(row_name)] = amount
+    relaxed = Relaxed(frozenset((law,)), relaxation._first, missing, (), True, {})
+    place = place_of(relaxation, relaxed, law)
+    assert place is not None
+    return place
+
+
+@pytest.mark.parametrize(
+    ("joint", "amount", "what", "helper"),
+    [
+        # Plant signs: plus is plantarflexion, knee flexion, hip extension; a row that is too
+        # high (missing < 0) has a moment in the plus sense without a source.
+        ("ankle_dorsiflexion_r", -10.0, "right ankle plantarflexion", "soleus_r"),
+        ("ankle_dorsiflexion_r", 10.0, "right ankle dorsiflexion", "tibialis_anterior_r"),
+        ("knee_flexion_r", -10.0, "right knee flexion", "hamstrings_r"),
+        ("knee_flexion_l", 10.0, "left knee extension", "vasti_l"),
+        ("hip_flexion_l", -10.0, "left hip extension", "gluteus_maximus_l"),
+        ("hip_flexion_r", 10.0, "right hip flexion", "iliopsoas_r"),
+    ],
+)
+def test_the_missing_moment_has_joint_direction_and_muscles(joint, amount, what, helper):
+    place = broken("muscles", f"equations of motion | right single support 0.14 | {joint}", amount)
+    assert place.what == what
+    assert place.missing == pytest.approx(20.0)  # ten tolerances of 2 N m
+    assert place.unit == "N m"
+    assert helper in place.helpers
+    assert all(name.endswith(joint[-2:]) for name in place.helpers)
+    assert place.moment > 0.0
+
+
+def test_the_instant_is_told_from_the_leg_that_lacks():
+    name = "equations of motion | right loading 0.50 | ankle_dorsiflexion_l"
+    place = broken("muscles", name, -10.0)
+    assert place.when == "right loading; the left leg pushes off"
+    assert 2.0 < place.percent < 10.0
+    own = broken("muscles", name[:-1] + "r", -10.0)
+    assert own.when == "right loading; the right leg takes the load"
+
+
+def test_of_the_whole_stride_there_is_no_instant():
+    place = broken("speed", "average speed | stride | hat_x", 3.0)
+    assert np.isnan(place.percent) and place.when == ""
+    assert place.missing == pytest.approx(0.3)
+    assert place.sentence == "The length of a stride is off by 0.3 m"
+
+
+def test_a_kept_law_has_no_place():
+    relaxation = relaxation_of("weak")
+    missing = np.zeros(len(relaxation.elastic.ends))
+    relaxed = Relaxed(frozenset(), relaxation._first, missing, (), True, {})
+    assert place_of(relaxation, relaxed, "muscles") is None
+
+
+def test_sentences_name_saturated_muscles():
+    place = Place("muscles", "left hip abduction", "right toe off", 61.6, 11.7, "N m",
+                  ("GMEDP", "TFL"))  # fmt: skip
+    assert place.sentence == (
+        "Left hip abduction lacks 12 N m at 62 % of the stride (right toe off): "
+        "GMEDP, TFL saturated"
+    )
