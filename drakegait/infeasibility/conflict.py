@@ -215,6 +215,8 @@ def find_conflict(
     if enough:
         say("giving up all but " + ", ".join(enough))
         others = relaxation.give_up(set(relaxation.names) - set(enough), least)
+        if stopped():
+            return Conflict(enough, least, alone, False, False)
         if others.broken:
             return Conflict(enough, least, alone, others.converged, True)
     given_up = set(relaxation.names) - set(suspects)

@@ -30,11 +30,12 @@ from drakegait.infeasibility.laws import MUSCLES
 from drakegait.infeasibility.place import Place, place_of
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
-from drakegait.settings import Settings
 from drakegait.solve import solve
 from drakegait.solvers.monitor import Monitor, Progress
 from drakegait.solvers.options import SolverOptions
+from drakegait.solvers.outcome import Outcome
 from drakegait.study import GaitStudy
+from drakegait.study_rules import check_number
 
 TIME_LIMIT = 600.0  # [s]
 MOST_REMEDIES = 2
@@ -67,17 +68,12 @@ def explain(
     """
     if gait.converged:
         raise InvalidInput("gait to explain", "converged", "one whose solve did not converge")
-    _check("time_limit", time_limit, 1.0, 1e6, "s")
-    _check("remedies", remedies, 0, 5, "-")
+    check_number("time_limit", time_limit, 1.0, 1e6, "s")
+    if isinstance(remedies, bool) or not isinstance(remedies, int) or not 0 <= remedies <= 5:
+        raise InvalidInput("remedies", remedies, "a whole number from 0 to 5")
     options = SolverOptions(max_iterations=_MAX_ITERATIONS)
     search = _Search(gait.study, options.replace(**choices), time_limit, report)
-    return search.run(int(remedies))
-
-
-def _check(name: str, value: object, low: float, high: float, unit: str) -> None:
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not low <= value <= high:  # type: ignore[operator]
-        raise InvalidInput(name, value, f"a number from {low:g} to {high:g} [{unit}]")
+    return search.run(remedies)
 
 
 class _Search:
@@ -86,7 +82,7 @@ class _Search:
     def __init__(
         self,
         study: GaitStudy,
-        options: Settings,
+        options: SolverOptions,
         time_limit: float,
         report: Callable[[str, Progress | None], None] | None,
     ):
@@ -253,8 +249,6 @@ def _place(
 
 def _as_guess(relaxation: Relaxation, relaxed: Relaxed) -> Gait:
     """A walk that breaks laws, as the start of a solve."""
-    from drakegait.solvers.outcome import Outcome
-
     outcome = Outcome(
         solver="ipopt-mumps", status="failed", message="Laws were given up.", iterations=0,
         wall_time=0.0, setup_time=0.0, num_variables=0, num_constraints=0, jacobian_nonzeros=0,

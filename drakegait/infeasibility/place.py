@@ -32,7 +32,8 @@ class Place:
 
     Attributes:
         law: the law that was given up.
-        what: joint and direction, foot, or the stride as a whole.
+        what: for muscles the joint and the direction that lacks; for other laws what is wrong, as
+            a clause.
         when: phase or event, and what the leg does there; empty for the whole stride.
         percent: of the stride; nan for the whole stride.
         missing: how much is missing, above zero.
@@ -56,10 +57,9 @@ class Place:
     def sentence(self) -> str:
         """In words, without a full stop."""
         at = f" at {self.percent:.0f} % of the stride ({self.when})" if self.when else ""
-        text = f"{self.what} lacks {self.missing:.2g} {self.unit}{at}".replace("  ", " ")
-        if self.law != MUSCLES:
-            text = f"{self.what} is off by {self.missing:.2g} {self.unit}{at}"
-        elif self.muscles:
+        lacks = f" lacks {_two_digits(self.missing)} {self.unit}" if self.law == MUSCLES else ""
+        text = f"{self.what}{lacks}{at}"
+        if self.muscles:
             text += f": {', '.join(self.muscles)} saturated"
         return text[0].upper() + text[1:]
 
@@ -77,16 +77,58 @@ def place_of(relaxation: Relaxation, relaxed: Relaxed, law: str) -> Place | None
     kind, _, name = elastic.row_names[row].split(" | ")
     point = _point_of(relaxation.program, row)
     x = elastic.unknowns(relaxed.point)
+    unit = elastic.row_units[row]
     if point is None:
-        what = {"average speed": "the length of a stride", "bound": f"bound of {name}"}
-        words = what.get(kind, f"{kind} of {name}")
-        return Place(law, words, "", np.nan, abs(amount), elastic.row_units[row])
+        clause = _of_stride(relaxation, relaxed, kind, name, amount, unit)
+        return Place(law, clause, "", np.nan, abs(amount), unit)
     percent = 100.0 * float(relaxation.program.state(x).tau[point])
     when = _when(relaxation.program, point, name)
     if law == MUSCLES:
         return _of_muscles(relaxation.program, x, point, name, -amount, percent, when)
-    what = f"{kind} of {name.replace('_r', ' right').replace('_l', ' left').replace('_', ' ')}"
-    return Place(law, what, when, percent, abs(amount), elastic.row_units[row])
+    clause = _at_point(relaxation.program, x, point, kind, name, amount, unit)
+    return Place(law, clause, when, percent, abs(amount), unit)
+
+
+def _two_digits(number: float) -> str:
+    """Two digits that count, without an exponent."""
+    return f"{float(f'{number:.2g}'):g}"
+
+
+def _sided(name: str) -> str:
+    """`toe_r z` -> right toe."""
+    part = name.split()[0]
+    side = _SIDES.get(part[-2:], "")
+    return f"{side} {without_side(part).replace('_', ' ')}".strip()
+
+
+def _of_stride(
+    relaxation: Relaxation, relaxed: Relaxed, kind: str, name: str, amount: float, unit: str
+) -> str:
+    """What is wrong with the stride as a whole."""
+    values = relaxation.values(relaxed)
+    if kind == "average speed":
+        return f"the walk reaches {float(values.placement[:2].sum()) / values.stride_time:.2f} m/s"
+    what = f"the bound of {name}" if kind == "bound" else f"the {kind} ({name})"
+    return f"{what} is off by {_two_digits(abs(amount))} {unit}".strip()
+
+
+def _at_point(
+    program: GaitProgram, x: np.ndarray, point: int, kind: str, name: str, amount: float, unit: str
+) -> str:  # fmt: skip
+    """What is wrong at a control point, as a clause."""
+    size, who = abs(amount), _sided(name)
+    if kind == "friction":
+        force = program.state(x).ground_reactions[point, 0 if name.endswith("_r") else 1]
+        if force[2] > 0.0:
+            ratio = float(np.hypot(force[0], force[1]) / force[2])
+            return f"the {who} would need friction of {_two_digits(ratio)}"
+    if kind == "clearance":
+        return f"the {who} is {_two_digits(1e3 * size)} mm in the ground"
+    if kind == "foot contact" and unit == "m":
+        return f"the {who} is {_two_digits(1e3 * size)} mm too far off its print"
+    if kind == "joint limit" and unit == "rad":
+        return f"{who} leaves its range by {_two_digits(np.degrees(size))} degrees"
+    return f"{kind} of the {who} is off by {_two_digits(size)} {unit}"
 
 
 def _point_of(program: GaitProgram, row: int) -> int | None:

@@ -58,7 +58,28 @@ def test_of_the_whole_stride_there_is_no_instant():
     place = broken("speed", "average speed | stride | hat_x", 3.0)
     assert np.isnan(place.percent) and place.when == ""
     assert place.missing == pytest.approx(0.3)
-    assert place.sentence == "The length of a stride is off by 0.3 m"
+    values = relaxation_of("weak").program.values(relaxation_of("weak").elastic.unknowns(
+        relaxation_of("weak")._first
+    ))  # fmt: skip
+    reached = values.placement[:2].sum() / values.stride_time
+    assert place.sentence == f"The walk reaches {reached:.2f} m/s"
+
+
+@pytest.mark.parametrize(
+    ("law", "row", "amount", "clause"),
+    [
+        ("clearance", "clearance | right heel rise 0.50 | toe_l", 2.0,
+         "The left toe is 20 mm in the ground at"),
+        ("feet", "foot contact | right single support 0.14 | toe_r z", -5.0,
+         "The right toe is 10 mm too far off its print at"),
+        ("friction", "friction | right single support 0.14 | foot_r", 0.01,
+         "The right foot would need friction of 0."),
+        ("phase durations", "phase duration | right loading | time", 0.5,
+         "The phase duration (time) is off by 0.05 s"),
+    ],
+)
+def test_other_laws_break_in_words(law, row, amount, clause):
+    assert broken(law, row, amount).sentence.startswith(clause)
 
 
 def test_a_kept_law_has_no_place():
