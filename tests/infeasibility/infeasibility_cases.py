@@ -41,5 +41,5 @@ def relaxation_of(name: str) -> Relaxation:
 STUDIES = {
     "plain": TINY,
     "limited": limited(TINY, "knee_flexion", 0.0, 30.0),
-    "weak": weak(TINY, 0.2),
+    "weak": weak(TINY, 0.15),
 }

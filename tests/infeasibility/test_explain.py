@@ -14,6 +14,7 @@ from drakegait.gait import Gait
 from drakegait.infeasibility.explain import explain
 from drakegait.infeasibility.explanation import Explanation
 from drakegait.infeasibility.laws import laws_of
+from drakegait.infeasibility.place import place_of
 from drakegait.program.gait_program import GaitProgram
 from drakegait.solve import solve
 from drakegait.study import GaitStudy
@@ -40,6 +41,25 @@ def unsolved(study: GaitStudy, status: str = "infeasible") -> Gait:
 @functools.cache
 def explained(name: str) -> Explanation:
     return explain(unsolved(CASES[name][0]), remedies=1)
+
+
+def test_a_walker_too_weak_can_walk_with_moments_from_nowhere_and_only_so():
+    """The quick part of an explanation: which law is in the way, where, and which is not."""
+    relaxation = relaxation_of("weak")
+    least = relaxation.least()
+    assert {"muscles", "speed"} <= set(least.broken)
+    helped = relaxation.give_up(("muscles",), least)
+    assert helped.converged and not helped.broken
+    assert relaxation.give_up(("steps",), least).broken
+    place = place_of(relaxation, helped, "muscles")
+    assert place.missing > TINY.tolerances.moment_tolerance
+    assert place.muscles and "saturated" in place.sentence
+    # What the joint lacks is what the equations of motion lack, all other laws held.
+    program, x = relaxation.program, relaxation.elastic.unknowns(helped.point)
+    off = program.violations(x)
+    names = [program.row_names[i] for i in (off > 0.02).nonzero()[0]]
+    assert names and all(name.startswith("equations of motion") for name in names)
+    assert not any("hat_" in name for name in names)
 
 
 @pytest.mark.slow
