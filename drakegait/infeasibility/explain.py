@@ -27,7 +27,7 @@ from drakegait.infeasibility.explanation import (
 )
 from drakegait.infeasibility.knobs import Knob, changed_study, knobs_for
 from drakegait.infeasibility.laws import MUSCLES
-from drakegait.infeasibility.place import Place, place_of
+from drakegait.infeasibility.place import Place, place_of, short_muscles
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
 from drakegait.solve import solve
@@ -159,7 +159,8 @@ class _Search:
         place = _place(relaxation, enough, conflict)
         muscular = place if place is not None and place.law == MUSCLES else None
         found, tried = [], []
-        for knob in knobs_for(relaxation, enough, muscular):
+        short = () if muscular is None else short_muscles(relaxation, enough[MUSCLES])
+        for knob in knobs_for(relaxation, enough, muscular, short):
             if len(found) == most or self._ended is not None:
                 break
             if any(knob.law == other.law for other, _ in found):

@@ -51,7 +51,10 @@ class Knob:
 
 
 def knobs_for(
-    relaxation: Relaxation, alone: dict[str, Relaxed], place: Place | None
+    relaxation: Relaxation,
+    alone: dict[str, Relaxed],
+    place: Place | None,
+    short: Sequence[str] = (),
 ) -> list[Knob]:
     """Knobs of the laws in `alone`, what is out of the ordinary first.
 
@@ -59,6 +62,7 @@ def knobs_for(
         relaxation: of the study.
         alone: walks that give up one law and keep the others.
         place: where the muscles are too weak, if they are among the laws.
+        short: names of the muscles that are too weak there and elsewhere.
     """
     found: list[Knob] = []
     for law, relaxed in alone.items():
@@ -68,7 +72,7 @@ def knobs_for(
         if law in alone:
             found += make(relaxation, alone[law])
     if MUSCLES in alone and place is not None:
-        found += _strengths(relaxation.study, place)
+        found += _strengths(relaxation.study, place, short)
         found += _tolerance(relaxation.study, place)
     return sorted(found, key=lambda knob: not knob.unusual)
 
@@ -200,20 +204,17 @@ def _widened(study: GaitStudy, base: str, low: float, high: float) -> GaitStudy:
     return study.replace(limits=limits, disorders=disorders)
 
 
-def _strengths(study: GaitStudy, place: Place) -> list[Knob]:
+def _strengths(study: GaitStudy, place: Place, short: Sequence[str]) -> list[Knob]:
     """More strength of the muscles that are saturated where it lacks, or of all."""
     percent = 100.0 * place.missing / max(place.moment, 1e-3)
     rung = next((k for k, x in enumerate(_STRENGTHS) if x >= 0.5 * percent), len(_STRENGTHS) - 1)
     tries = [*_STRENGTHS[max(rung - 1, 0) :: 2][:4]]
     weak = bool(study.strength) or any(isinstance(x, Weakness) for x in study.disorders)
     known = dict(zip(study.walker.muscles.names, study.walker.muscles.abbreviations, strict=True))
-    chosen = [name for name in place.helpers if known[name] in place.muscles] or list(place.helpers)
+    chosen = list(short or place.helpers)
     if study.symmetric:
         chosen = list(dict.fromkeys(without_side(name) for name in chosen))
-    who = ", ".join(
-        dict.fromkeys(known[name] for name in known if {name, without_side(name)} & {*chosen})
-    )
-    side = "" if study.symmetric else {"_r": " right", "_l": " left"}[chosen[0][-2:]]
+    who = _words_of_muscles(study, chosen)
     everyone = list(dict.fromkeys(without_side(name) for name in known))
     return [
         Knob(
@@ -221,8 +222,20 @@ def _strengths(study: GaitStudy, place: Place) -> list[Knob]:
             lambda value, words=words: f"with {value:g} % more strength of {words}",
             _middle(5.0), weak,
         )
-        for names, words in ((chosen, who + side), (everyone, "all muscles"))
+        for names, words in ((chosen, who), (everyone, "all muscles"))
     ]  # fmt: skip
+
+
+def _words_of_muscles(study: GaitStudy, chosen: Sequence[str]) -> str:
+    """Abbreviations, by side where the sides differ."""
+    muscles, by_side = study.walker.muscles, {"": [], " right": [], " left": []}
+    for name, short in zip(muscles.names, muscles.abbreviations, strict=True):
+        if name in chosen:
+            by_side[" right" if name.endswith("_r") else " left"].append(short)
+        elif without_side(name) in chosen and short not in by_side[""]:
+            by_side[""].append(short)
+    parts = [", ".join(names) + side for side, names in by_side.items() if names]
+    return " and ".join(parts)
 
 
 def _stronger(study: GaitStudy, names: Sequence[str], percent: float) -> GaitStudy:

@@ -12,6 +12,7 @@ from drakegait.program.gait_program import GaitProgram
 from drakegait.walker import coordinates, feet
 
 _SATURATED = 0.9  # of full excitation or activation
+_LITTLE = 0.5  # of the tolerance: a lack that does not count
 _TURNS = {  # towards + and - in anatomical sense
     "hip_flexion": ("hip flexion", "hip extension"),
     "hip_adduction": ("hip adduction", "hip abduction"),
@@ -87,6 +88,37 @@ def place_of(relaxation: Relaxation, relaxed: Relaxed, law: str) -> Place | None
         return _of_muscles(relaxation.program, x, point, name, -amount, percent, when)
     clause = _at_point(relaxation.program, x, point, kind, name, amount, unit)
     return Place(law, clause, when, percent, abs(amount), unit)
+
+
+def short_muscles(relaxation: Relaxation, relaxed: Relaxed) -> tuple[str, ...]:
+    """Names of the muscles that are saturated wherever a joint lacks a moment.
+
+    Each joint counts in each direction at the instant of its largest lack; where no muscle that
+    pulls this way is saturated, all of them.
+    """
+    elastic, number = relaxation.elastic, relaxation.names.index(MUSCLES)
+    own = np.flatnonzero(relaxation.law_of_row == number)
+    worst: dict[tuple[str, bool], tuple[float, int]] = {}
+    for position in own:
+        row, amount = int(elastic.ends[position]), float(relaxed.missing[position])
+        joint = elastic.row_names[row].rpartition(" | ")[2]
+        if abs(amount) > max(worst.get((joint, amount > 0.0), (_LITTLE, 0))[0], _LITTLE):
+            worst[joint, amount > 0.0] = abs(amount), position
+    x = elastic.unknowns(relaxed.point)
+    found: set[str] = set()
+    for (joint, low), (amount, position) in worst.items():
+        row = int(elastic.ends[position])
+        point = _point_of(relaxation.program, row)
+        assert point is not None  # equations of motion belong to control points
+        lack = -amount if low else amount
+        place = _of_muscles(
+            relaxation.program, x, point, joint, lack * float(elastic.row_scale[row]), 0.0, ""
+        )
+        known = relaxation.program.formulation.walker.muscles
+        short = dict(zip(known.names, known.abbreviations, strict=True))
+        full = [name for name in place.helpers if short[name] in place.muscles]
+        found |= set(full or place.helpers)
+    return tuple(sorted(found))
 
 
 def _two_digits(number: float) -> str:

@@ -22,6 +22,9 @@ PLACE = Place(
 )  # fmt: skip
 
 
+SHORT = ("soleus_r",)
+
+
 @dataclasses.dataclass
 class AtRest:
     """Stands for a relaxation whose walk is the guess from the reference, restated."""
@@ -48,7 +51,7 @@ class AtRest:
 def knobs(study: GaitStudy, law: str, speed: float = 1.2):
     rest = AtRest(study, speed)
     relaxed = Relaxed(frozenset((law,)), rest.point, np.zeros(1), (), True, {})
-    return knobs_for(rest, {law: relaxed}, PLACE if law == "muscles" else None)
+    return knobs_for(rest, {law: relaxed}, *((PLACE, SHORT) if law == "muscles" else (None,)))
 
 
 @pytest.mark.parametrize(
@@ -124,7 +127,7 @@ def test_of_one_leg_only_that_leg_becomes_stronger():
     rest = AtRest.__new__(AtRest)
     rest.study = study
     relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
-    first = knobs_for(rest, {"muscles": relaxed}, PLACE)[0]
+    first = knobs_for(rest, {"muscles": relaxed}, PLACE, SHORT)[0]
     ratio = first.study(20).walker.muscles.f_max / study.walker.muscles.f_max
     names = study.walker.muscles.names
     assert first.words(20) == "with 20 % more strength of SOL right"
@@ -170,3 +173,16 @@ def test_a_value_out_of_range_is_left_out():
     (knob,) = knobs(TINY.replace(speed=0.35), "speed", 0.33)
     assert changed_study(knob, 0.2) is None
     assert changed_study(knob, 0.3).speed == 0.3
+
+
+def test_muscles_of_both_legs_are_named_by_side():
+    study = GaitStudy.planar(11, interior_points=(2,) * 8)
+    rest = AtRest.__new__(AtRest)
+    rest.study = study
+    relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
+    names = ("soleus_l", "vasti_r", "soleus_r")
+    first = knobs_for(rest, {"muscles": relaxed}, PLACE, names)[0]
+    assert first.words(20) == "with 20 % more strength of VAS, SOL right and SOL left"
+    ratio = first.study(20).walker.muscles.f_max / study.walker.muscles.f_max
+    stronger = {study.walker.muscles.names[i] for i in np.flatnonzero(ratio > 1.01)}
+    assert stronger == {*names}

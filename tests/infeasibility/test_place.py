@@ -7,7 +7,7 @@ import pytest
 from infeasibility_cases import relaxation_of
 
 from drakegait.infeasibility.conflict import Relaxed
-from drakegait.infeasibility.place import Place, place_of
+from drakegait.infeasibility.place import Place, place_of, short_muscles
 
 
 def broken(law: str, row_name: str, amount: float) -> Place:
@@ -96,3 +96,19 @@ def test_sentences_name_saturated_muscles():
         "Left hip abduction lacks 12 N m at 62 % of the stride (right toe off): "
         "GMEDP, TFL saturated"
     )
+
+
+def test_all_joints_that_lack_a_moment_name_their_muscles():
+    relaxation = relaxation_of("weak")
+    elastic = relaxation.elastic
+    names = [elastic.row_names[i] for i in elastic.ends]
+    missing = np.zeros(len(elastic.ends))
+    where = "equations of motion | right single support 0.14 |"
+    missing[names.index(f"{where} ankle_dorsiflexion_r")] = -10.0
+    missing[names.index(f"{where} knee_flexion_l")] = 3.0
+    missing[names.index(f"{where} hip_flexion_l")] = 0.1  # too little to count
+    relaxed = Relaxed(frozenset(("muscles",)), relaxation._first, missing, (), True, {})
+    found = short_muscles(relaxation, relaxed)
+    assert any(name in found for name in ("soleus_r", "gastrocnemius_r"))
+    assert any(name in found for name in ("vasti_l", "rectus_femoris_l"))
+    assert "iliopsoas_l" not in found
