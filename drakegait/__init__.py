@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from drakegait.check import check
     from drakegait.gait import Gait
+    from drakegait.infeasibility.explain import explain
     from drakegait.reference.reference import Reference
     from drakegait.replay import replay
     from drakegait.report.compare import compare
@@ -39,6 +40,7 @@ __all__ = [
     "Subject",
     "check",
     "compare",
+    "explain",
     "plot",
     "replay",
     "solve",
@@ -54,6 +56,7 @@ _HOMES = {
     "Subject": "drakegait.walker.subject",
     "check": "drakegait.check",
     "compare": "drakegait.report.compare",
+    "explain": "drakegait.infeasibility.explain",
     "plot": "drakegait.report.figures",
     "replay": "drakegait.replay",
     "solve": "drakegait.solve",

@@ -35,7 +35,9 @@ MAY_IMPORT = {
 }
 # Parts that start a solve. All others (gait, check, report, replay and their helpers) read a
 # finished gait and need no solver, only the record of how the solve ended.
-SOLVING = {"__init__", "cli", "commands", "fidelity", "paper", "solve", "sweep"}
+SOLVING = {
+    "__init__", "cli", "commands", "fidelity", "infeasibility", "paper", "solve", "sweep",
+}  # fmt: skip
 SOLVER_RECORD = "drakegait.solvers.outcome"
 SOLVER_LIBRARIES = ("drakegait.solvers", "pydrake.solvers", "ipyopt")
 # The judges of a gait evaluate it on their own and do not look at the rows of the program.

@@ -19,6 +19,7 @@ import typer
 
 from drakegait.cli import (
     compare,
+    explain,
     export,
     fidelity,
     import_,
@@ -32,7 +33,8 @@ from drakegait.cli.app import app
 from drakegait.errors import DrakegaitError
 
 __all__ = [
-    "app", "compare", "export", "fidelity", "import_", "look", "main", "paper", "sensitivities",
+    "app", "compare", "explain", "export", "fidelity", "import_", "look", "main", "paper",
+    "sensitivities",
     "sweep", "walk",
 ]  # fmt: skip
 
@@ -63,7 +65,7 @@ def main(arguments: list[str] | None = None) -> None:
         _say(str(error))
         code = BAD_INPUT
     except _COMMAND_LINE_ERROR as error:
-        code = _explain(error)
+        code = _refused(error)
     except ImportError as error:
         if not _interrupted(error):
             raise
@@ -80,7 +82,7 @@ def _interrupted(error: BaseException | None) -> bool:
     return error is not None
 
 
-def _explain(error: Any) -> int:
+def _refused(error: Any) -> int:
     """Print a refused option in one sentence."""
     if not str(error.format_message()):  # `drakegait` alone: Typer has shown the help
         return BAD_INPUT

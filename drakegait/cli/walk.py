@@ -125,6 +125,10 @@ def walk(
         help="Walk twice: without what makes the walker differ (added masses, strengths, limits, "
         "disorders) into unchanged/, then with it, and compare both in report.html. A --guess that "
         "is the unchanged walk is taken as it is.")] = False,
+    explain: Annotated[bool, option(
+        "--explain/--no-explain", panel=_WAY,
+        help="Where no walk is found, tell which laws are in conflict, where, and what would help; "
+        "takes up to 5 minutes, within --time-limit.")] = True,
     out: Annotated[str, option(
         "--out", panel=_FILES, metavar="DIR",
         help="Folder for gait.nc, summary.json, figures/ and replay.html; with --compare also "

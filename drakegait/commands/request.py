@@ -59,6 +59,7 @@ class WalkRequest:
     starts: int = 1
     seed: int = 0
     compare: bool = False
+    explain: bool = True
     weakness: Texts = None
     contracture: Texts = None
     spasticity: Texts = None

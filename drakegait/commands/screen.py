@@ -86,7 +86,18 @@ class ProgressDisplay:
 
     def report(self, progress: Progress) -> None:
         """Show an iterate."""
-        line = progress_line(progress)
+        self._show(progress_line(progress))
+
+    def task(self, task: str, progress: Progress | None) -> None:
+        """Show what is being tried, and how far it is."""
+        if progress is None:
+            self._last = -PLAIN_INTERVAL  # a new task is always worth a line
+            self._show(f"explaining: {task}")
+        else:
+            left = clock(progress.remaining)
+            self._show(f"explaining: {task}, iteration {progress.iteration}, {left} left")
+
+    def _show(self, line: str) -> None:
         if self._live is not None:
             self._live.update(self._text(line), refresh=True)
         elif time.monotonic() - self._last >= PLAIN_INTERVAL:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import time
 from pathlib import Path
 
 from rich.console import Console
 
+from drakegait.commands.explain import EXPLAINED_STATUSES, EXPLANATION, explain_gait
 from drakegait.commands.gait_files import (
     FIGURES_FOLDER,
     GAIT_FILE,
@@ -25,13 +27,17 @@ from drakegait.commands.screen import (
     quiet_drake,
 )
 from drakegait.commands.unchanged import LABEL, UNCHANGED_FOLDER, known_gait, unchanged
+from drakegait.errors import InvalidInput
 from drakegait.gait import Gait
+from drakegait.infeasibility.explanation import Explanation
 from drakegait.report.study_words import who
 from drakegait.solve import solve
 from drakegait.solvers.options import SolverOptions
 from drakegait.study import GaitStudy
 
 NOT_CONVERGED = 3
+EXPLAIN_LIMIT = 300.0  # [s] for the explanation of a walk that was not found
+_LEAST_EXPLAIN = 5.0  # [s] below which it is not begun
 
 
 def walk(request: WalkRequest) -> int:
@@ -72,6 +78,7 @@ def _walk(
 ) -> Gait:  # fmt: skip
     """One walk: solved, saved into `folder`, and shown."""
     _say(screen, f"{_who(study)}. Ctrl-C ends with the best gait so far.")
+    started = time.monotonic()
     with ProgressDisplay(screen) as display:
         gait = solve(
             study, guess=guess, options=options, refine=request.refine, starts=request.starts,
@@ -82,6 +89,11 @@ def _walk(
         print_report(screen, gait.report)
     print_starts(screen, gait.outcome)
     _print_end(screen, gait)
+    if request.explain and gait.outcome.status in EXPLAINED_STATUSES:
+        spent = time.monotonic() - started
+        found = _explain(screen, gait, folder, options.time_limit - spent)
+        if found is not None:
+            write_summary({**gait.summary(), EXPLANATION: found.to_dict()}, folder / SUMMARY_FILE)
     if request.no_pictures:
         _warn_of_old(screen, folder, FIGURES_FOLDER, REPLAY_FILE)
     else:
@@ -147,6 +159,19 @@ def _print_end(screen: Console, gait: Gait) -> None:
     )
     for line in lines:
         _say(screen, line)
+
+
+def _explain(screen: Console, gait: Gait, folder: Path, left: float) -> Explanation | None:
+    """Why no walk was found, as far as the time allows; None if it could not be asked."""
+    limit = min(EXPLAIN_LIMIT, left)
+    if limit < _LEAST_EXPLAIN:
+        screen.print("No time is left to explain it: drakegait explain does.", markup=False)
+        return None
+    try:
+        return explain_gait(screen, gait, folder, limit)
+    except InvalidInput as error:
+        screen.print(f"Not explained: {error}", markup=False, soft_wrap=True)
+        return None
 
 
 def _pictures(screen: Console, gait: Gait, folder: Path) -> list[str]:

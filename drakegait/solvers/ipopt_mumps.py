@@ -14,7 +14,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import casadi
 import numpy as np
@@ -53,18 +53,34 @@ _prefer_fast_blas()
 import ipyopt  # noqa: E402 - after the BLAS that it is to use
 
 
+class Curvature(Protocol):
+    """Second derivatives of a Lagrangian, lower triangle."""
+
+    rows: np.ndarray
+    columns: np.ndarray
+
+    def values(self, x: np.ndarray, multipliers: np.ndarray, objective: float) -> np.ndarray:
+        """Entries at (`rows`, `columns`)."""
+
+
 class _Run:
     """The callbacks of one solve and what they have seen."""
 
-    def __init__(self, program: GaitProgram, options: SolverOptions, monitor: Monitor):
+    def __init__(
+        self,
+        program: GaitProgram,
+        options: SolverOptions,
+        monitor: Monitor,
+        curvature: Curvature | None,
+    ):
         self.program, self.monitor = program, monitor
         self.settled = Settled(options)
         self.current = np.zeros(program.num_variables)
         self.iteration = 0
         self.before = 0  # iterations of the restarts before
-        self.hessian: LagrangianHessian | None = None
+        self.hessian = curvature
         analytic = options.derivatives == "analytic" and program.formulation.lifted
-        if options.second_derivatives == "exact" and analytic:
+        if curvature is None and options.second_derivatives == "exact" and analytic:
             self.hessian = LagrangianHessian(program)
 
     def problem(self, ipopt: dict[str, Any]) -> ipyopt.Problem:
@@ -120,13 +136,16 @@ def solve_with_ipopt_mumps(
     options: SolverOptions,
     monitor: Monitor,
     warm: bool = False,
+    curvature: Curvature | None = None,
 ) -> Solution:
     """Minimise the program from `x`; see `Solution`.
 
     Args:
         warm: `x` is an earlier gait, near the optimum.
+        curvature: second derivatives of a program that `LagrangianHessian` does not know;
+            default those, or limited memory.
     """
-    run = _Run(program, options, monitor)
+    run = _Run(program, options, monitor, curvature)
     settled = run.settled
     ipopt = ipopt_options(options, warm, run.hessian is not None) | {
         "print_level": 0,

@@ -1,0 +1,235 @@
+"""The smallest set of laws that cannot all hold, by giving up laws group by group.
+
+A law is given up by making it cheap to break while all others stay dear. If then nothing dear is
+broken, every conflict needs that law. Those laws together are tested with all others given
+up: if they still break, they are the only conflict and the smallest. If not, or if no law is in
+every conflict, the deletion filter (Chinneck 2008, section 6.2) ends with one from which
+no law can be left out. All solves find local optima; so does what follows from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from drakegait.errors import InvalidInput
+from drakegait.infeasibility.elastic import ElasticHessian, ElasticProgram
+from drakegait.infeasibility.laws import laws_of
+from drakegait.program.gait_program import GaitProgram
+from drakegait.program.guess import guess_from_values
+from drakegait.solvers.monitor import Monitor
+from drakegait.solvers.options import SolverOptions
+from drakegait.study import GaitStudy
+from drakegait.transcription.design_vector import DesignValues
+
+_GIVEN_UP = 2e-3  # price of a law that is given up, relative
+_HARD = 0.02  # of a tolerance or typical size: what rows may be off that are not soft
+_MAX_ITERATIONS = 250
+_MAX_RECENTRINGS = 3
+_AT_BOUND = 0.98  # of the reach of an event
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxed:
+    """The walk that breaks the dear laws least.
+
+    Attributes:
+        given_up: names of the laws that were cheap.
+        point: extended unknowns.
+        missing: of each soft row, in its unit, see `ElasticProgram.missing` (num_soft,).
+        broken: names of the dear laws that do not hold.
+        converged: whether the solver ended at an optimum.
+        pull: largest multiplier of each law, relative to its price.
+    """
+
+    given_up: frozenset[str]
+    point: np.ndarray
+    missing: np.ndarray
+    broken: tuple[str, ...]
+    converged: bool
+    pull: dict[str, float]
+
+
+class Relaxation:
+    """The elastic program of a study, solved with one set of laws given up after the other.
+
+    Args:
+        study: what has no walk.
+        values: the unknowns to start from.
+        monitor: of all solves.
+
+    Attributes:
+        program, elastic, laws: as their classes say.
+        law_of_row: number of the law of each soft row (num_soft,).
+    """
+
+    def __init__(self, study: GaitStudy, values: DesignValues, monitor: Monitor):
+        self.study, self._monitor = study, monitor
+        self._state(values)
+
+    def _state(self, values: DesignValues) -> None:
+        self.program = GaitProgram(self.study.formulation(values.events))
+        self.laws = laws_of(self.program)
+        rows = np.any([law.rows for law in self.laws], axis=0)
+        variables = np.any([law.variables for law in self.laws], axis=0)
+        self.elastic = ElasticProgram(self.program, rows, variables)
+        self.law_of_row = np.concatenate(
+            [
+                np.argmax([law.rows for law in self.laws], axis=0)[rows],
+                np.argmax([law.variables for law in self.laws], axis=0)[variables],
+            ]
+        )
+        lifted = self.program.formulation.lifted
+        self._curvature = ElasticHessian(self.elastic) if lifted else None
+        self._known: dict[frozenset[str], Relaxed] = {}
+        self._first = self.elastic.start(guess_from_values(self.program, values))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all laws."""
+        return tuple(law.name for law in self.laws)
+
+    def values(self, relaxed: Relaxed) -> DesignValues:
+        """The unknowns of a walk that breaks laws."""
+        return self.program.values(self.elastic.unknowns(relaxed.point))
+
+    def least(self) -> Relaxed:
+        """The walk that breaks all laws least; events are free to move far."""
+        found = self.give_up(())
+        for _ in range(_MAX_RECENTRINGS):
+            formulation, values = self.program.formulation, self.values(found)
+            moved = np.abs(values.events - np.array(formulation.event_centres))
+            stop = self._monitor.stop_reason is not None
+            if stop or not np.any(moved > _AT_BOUND * formulation.event_reach):
+                break
+            self._state(values)
+            found = self.give_up(())
+        return found
+
+    def give_up(self, names: Iterable[str], start: Relaxed | None = None) -> Relaxed:
+        """The walk that breaks least with the laws of these names given up."""
+        cheap = frozenset(names)
+        if start is not None and cheap in self._known:
+            return self._known[cheap]
+        full = np.array([law.price for law in self.laws])
+        factor = np.array([_GIVEN_UP if law.name in cheap else 1.0 for law in self.laws])
+        elastic, monitor = self.elastic, self._monitor
+        elastic.prices = (full * factor)[self.law_of_row]
+        monitor.begin(elastic)
+        solution = _solver()(
+            elastic,
+            self._first if start is None else start.point,
+            SolverOptions(max_iterations=_MAX_ITERATIONS),
+            monitor,
+            warm=start is not None,
+            curvature=self._curvature,
+        )
+        missing = elastic.missing(solution.x)
+        # Hard rows and the slacks' equations hold as far as the solver got.
+        held = elastic.violations(solution.x).max() <= _HARD
+        most = _largest(np.abs(missing), self.law_of_row, len(self.laws))
+        broken = tuple(
+            law.name
+            for law, size in zip(self.laws, most, strict=True)
+            if law.name not in cheap and (size > law.held or not held)
+        )
+        pull = np.abs(solution.row_multipliers[elastic.ends]) / full[self.law_of_row]
+        pulls = _largest(pull, self.law_of_row, len(self.laws))
+        found = Relaxed(
+            cheap, solution.x, missing, broken, solution.status == "converged",
+            dict(zip(self.names, map(float, pulls), strict=True)),
+        )  # fmt: skip
+        if monitor.stop_reason is None:
+            self._known[cheap] = found
+        return found
+
+
+def _largest(amounts: np.ndarray, groups: np.ndarray, count: int) -> np.ndarray:
+    most = np.zeros(count)
+    np.maximum.at(most, groups, amounts)
+    return most
+
+
+def _solver() -> Callable:
+    """The solver of elastic programs.
+
+    Raises:
+        InvalidInput: it has no wheel for this machine.
+    """
+    try:
+        from drakegait.solvers.ipopt_mumps import solve_with_ipopt_mumps
+    except ImportError:
+        allowed = "on a machine with the package ipyopt, which relaxes the laws"
+        raise InvalidInput("explaining a conflict", "asked for", allowed) from None
+    return solve_with_ipopt_mumps
+
+
+@dataclass(frozen=True, eq=False)
+class Conflict:
+    """Laws that cannot all hold.
+
+    Attributes:
+        laws: names, in the order of `Relaxation.laws`.
+        least: the walk that breaks all laws least.
+        alone: for each law that was given up alone, the walk that was found.
+        smallest: whether it was shown that none of them can be left out, and that they
+            conflict with all others given up.
+        unique: whether every conflict contains all of them.
+    """
+
+    laws: tuple[str, ...]
+    least: Relaxed
+    alone: dict[str, Relaxed]
+    smallest: bool
+    unique: bool
+
+
+def find_conflict(
+    relaxation: Relaxation, least: Relaxed, stopped: Callable[[], bool], say: Callable[[str], None]
+) -> Conflict:
+    """Give up one law after the other.
+
+    Args:
+        relaxation: of the study.
+        least: the walk that breaks all laws least, and breaks some.
+        stopped: whether to end with what is known.
+        say: told what is tried next.
+    """
+    # A law whose multipliers stay below the lower price would be kept as well at that price:
+    # giving it up changes nothing.
+    suspects = [
+        name for name in relaxation.names
+        if name in least.broken or least.pull[name] > _GIVEN_UP
+    ]  # fmt: skip
+    alone: dict[str, Relaxed] = {}
+    for name in suspects:
+        if stopped():
+            return Conflict(_enough(alone), least, alone, False, False)
+        say(f"giving up {name}")
+        alone[name] = relaxation.give_up((name,), least)
+    enough = _enough(alone)
+    if stopped():
+        return Conflict(enough, least, alone, False, False)
+    if enough:
+        say("giving up all but " + ", ".join(enough))
+        others = relaxation.give_up(set(relaxation.names) - set(enough), least)
+        if stopped():
+            return Conflict(enough, least, alone, False, False)
+        if others.broken:
+            return Conflict(enough, least, alone, others.converged, True)
+    given_up = set(relaxation.names) - set(suspects)
+    for name in [name for name in reversed(suspects) if name not in enough]:
+        if stopped():
+            return Conflict(enough, least, alone, False, False)
+        say("giving up " + ", ".join([name, *sorted(given_up)]))
+        if relaxation.give_up({*given_up, name}, least).broken:
+            given_up.add(name)
+    laws = tuple(name for name in relaxation.names if name not in given_up)
+    return Conflict(laws, least, alone, not stopped(), False)
+
+
+def _enough(alone: dict[str, Relaxed]) -> tuple[str, ...]:
+    """Laws without which the others hold."""
+    return tuple(name for name, relaxed in alone.items() if not relaxed.broken)

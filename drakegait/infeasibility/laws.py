@@ -1,0 +1,167 @@
+"""What may be in conflict: the rows and bounds of a program in groups that a walker would name.
+
+Muscles are given up by letting a moment without a source act at the joints ("reserve"), which is
+more than any excitation could do; excitations themselves therefore stay within their bounds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from drakegait.errors import InvalidInput
+from drakegait.program.design import STEP_LENGTHS, STEP_WIDTHS, STRIDE_TIMES
+from drakegait.program.gait_program import GaitProgram
+from drakegait.program.timing import TimingRows
+from drakegait.walker.coordinates import names as coordinate_names
+
+MUSCLES, SPEED, FRICTION, ASYMMETRY = "muscles", "speed", "friction", "asymmetry"
+BALANCE, FEET, CLEARANCE, PUSH = "balance", "feet", "clearance", "push"
+STEPS, PHASES, RANGE = "steps", "phase durations", "range of "
+# A row of friction is in squared body weights, of which a tenth is much and 2e-4 (1.4 % of the body
+# weight) little; two per cent of a tolerance or typical size are little elsewhere.
+_FRICTION_PRICE, _FRICTION_HELD, _HELD = 10.0, 2e-4, 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """One group of rows and bounds.
+
+    Attributes:
+        name: `"muscles"`, `"speed"`, ..., `"range of knee_flexion"`.
+        words: what it demands, to be read after "cannot all hold:".
+        stated: whether the study states it; else it holds for every walk.
+        rows: mask of the program's rows (num_constraints,).
+        variables: mask of the unknowns whose bounds belong to it (num_variables,).
+        price: of one unit of a row.
+        held: how far a row may be off and count as held, in its unit.
+    """
+
+    name: str
+    words: str
+    stated: bool
+    rows: np.ndarray
+    variables: np.ndarray
+    price: float = 1.0
+    held: float = _HELD
+
+
+def laws_of(program: GaitProgram) -> list[Law]:
+    """All groups of `program`, those that a study states first.
+
+    Raises:
+        InvalidInput: the equations of motion are bounded by their largest residual alone.
+    """
+    formulation = program.formulation
+    form = formulation.variants.eom_form
+    if form != "components":
+        raise InvalidInput("eom_form", form, "'components' where a conflict is to be explained")
+    rows: dict[str, list[int]] = {}
+    for number, name in enumerate(program.row_names):
+        rows.setdefault(_law_of_row(name), []).append(number)
+    variables: dict[str, list[int]] = {}
+    for number, name in enumerate(program.design.names):
+        variables.setdefault(_law_of_variable(program, number, name), []).append(number)
+    words = _words(program)
+    known = [name for name in words if name in rows or name in variables]
+    return [
+        Law(
+            name, *words[name],
+            _mask(rows.get(name, ()), program.num_constraints),
+            _mask(variables.get(name, ()), program.num_variables),
+            *((_FRICTION_PRICE, _FRICTION_HELD) if name == FRICTION else (1.0, _HELD)),
+        )
+        for name in known
+    ]  # fmt: skip
+
+
+def _mask(which: object, size: int) -> np.ndarray:
+    mask = np.zeros(size, dtype=bool)
+    mask[list(which)] = True  # type: ignore[call-overload]
+    return mask
+
+
+_ROWS = {
+    "least-squares contact forces": BALANCE,
+    "foot contact": FEET,
+    "clearance": CLEARANCE,
+    "friction": FRICTION,
+    "free moment": FRICTION,
+    "normal force": PUSH,
+    "toe torque": "toe torque",
+    "average speed": SPEED,
+    "phase duration": PHASES,
+    "asymmetry": ASYMMETRY,
+    "periodic ends": "periodic ends",
+}
+
+
+def _law_of_row(name: str) -> str:
+    """The group of a row; empty for the excitations, which always hold."""
+    law, _, what = name.split(" | ")
+    if law == "equations of motion":
+        return BALANCE if what.startswith("hat_") else MUSCLES
+    if law == "joint limit":
+        return RANGE + without_side(what)
+    return _ROWS.get(law, "")
+
+
+def _law_of_variable(program: GaitProgram, number: int, name: str) -> str:
+    """The group of the bounds of an unknown; empty where they always hold."""
+    if name.startswith("contact force") and np.isfinite(program.design.lower[number]):
+        return "toe torque" if np.isfinite(program.design.upper[number]) else PUSH
+    return STEPS if name.startswith("step ") or name == "stride time" else ""
+
+
+def _words(program: GaitProgram) -> dict[str, tuple[str, bool]]:
+    """Words of each group and whether a study states it, in order."""
+    formulation = program.formulation
+    ranges = {}
+    for base in coordinate_names("spatial"):
+        limits = [x for x in formulation.limits if x.coordinate == base]
+        for limit in limits:
+            ranges[RANGE + without_side(base)] = (_range_words(base, limit.low, limit.high), True)
+    ratios = " and ".join(item.describe() for item in formulation.asymmetries)
+    shortest, longest = (10.0 * x for x in _phase_ends(program))
+    return {
+        MUSCLES: ("the strength of the muscles", True),
+        SPEED: (f"a speed of {formulation.speed:g} m/s", True),
+        FRICTION: (f"friction of {formulation.contact.friction:g}", True),
+        **ranges,
+        ASYMMETRY: (ratios, True),
+        "toe torque": ("the torque that the toes can bear", True),
+        BALANCE: ("the balance of forces on the whole body", False),
+        FEET: ("feet that stand still on their prints", False),
+        CLEARANCE: ("feet that do not enter the ground", False),
+        PUSH: ("a ground that can only push", False),
+        STEPS: (
+            f"steps of {STEP_LENGTHS[0]:g} to {STEP_LENGTHS[1]:g} m, no wider than "
+            f"{STEP_WIDTHS[1]:g} m, in strides of {STRIDE_TIMES[0]:g} to {STRIDE_TIMES[1]:g} s",
+            False,
+        ),
+        PHASES: (f"contact phases of {shortest:.2g} to {longest:.2g} s", False),
+        "periodic ends": ("ends of the curves that agree as in eq. (14)", False),
+    }
+
+
+def _phase_ends(program: GaitProgram) -> tuple[float, float]:
+    timing: TimingRows = program.timing
+    return float(timing.lower[1]) / 100.0, float(timing.upper[1]) / 100.0
+
+
+def _range_words(coordinate: str, low: float, high: float) -> str:
+    base = without_side(coordinate)
+    factor, unit = (1.0, " m") if base in ("hat_y", "hat_z") else (180.0 / np.pi, " degrees")
+    if not np.isfinite(low):
+        ends = f"of at most {factor * high:.3g}{unit}"
+    elif not np.isfinite(high):
+        ends = f"of at least {factor * low:.3g}{unit}"
+    else:
+        ends = f"between {factor * low:.3g} and {factor * high:.3g}{unit}"
+    return f"{base.replace('_', ' ')} {ends}"
+
+
+def without_side(name: str) -> str:
+    """A name without its `_r` or `_l`."""
+    return name[:-2] if name[-2:] in ("_r", "_l") else name
