@@ -24,9 +24,9 @@ from drakegait.solvers.settled import Settled
 from drakegait.solvers.solution import Solution
 
 FIRST_BARRIER, WARM_BARRIER = 1e-3, 1e-4
-# Of a start from its bounds, relative. With multipliers the start may stand further off: what
-# is at its bound goes back there in a few steps, and the others move freely.
-_PUSH, _WARM_PUSH, _KNOWN_PUSH = 0.2, 1e-4, 1e-2
+# Of a start from its bounds, relative. A first start stands far off: its forces say little about
+# which muscles will be silent, and what stands at a bound is slow to leave it.
+_PUSH, _WARM_PUSH = 0.2, 1e-2
 _LAST_BARRIER = 0.09  # of the tolerance on complementarity
 
 
@@ -56,7 +56,7 @@ def solve_condensed(
         x,
         barrier=first,
         last_barrier=_LAST_BARRIER * complementarity,
-        push=_PUSH if not warm else _WARM_PUSH if known is None else _KNOWN_PUSH,
+        push=_WARM_PUSH if warm else _PUSH,
         known=known,
     )
     monitor.step(method.x, 0)

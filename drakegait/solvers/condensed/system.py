@@ -182,14 +182,18 @@ class CondensedSystem:
         Args:
             convexity: share of the muscles' negative curvature that is made up for.
         """
-        self._added = convexity * self._lack() if convexity > 0.0 else None
+        self._added = None
+        if convexity > 0.0:
+            self._added = self._lack() if convexity == 1.0 else convexity * self._lack()
         matrix = self.matrix.copy() if self._added is None else self.matrix + self._added
         size = len(matrix)
         matrix[np.arange(size), np.arange(size)] += shift
         if len(self._border):
             # On the border's null space nothing changes; elsewhere K need not be definite.
             self._weight = np.abs(np.diag(self.matrix)).mean()
-            matrix += self._weight * self._border.T @ self._border
+            few = np.flatnonzero(self._border.any(axis=0))  # timing and placement
+            border = self._border[:, few]
+            matrix[np.ix_(few, few)] += self._weight * border.T @ border
         try:
             self._factor = scipy.linalg.cho_factor(
                 matrix, lower=True, overwrite_a=True, check_finite=False
