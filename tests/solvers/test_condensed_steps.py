@@ -1,0 +1,192 @@
+"""What makes steps of the condensed solver long: convexity, regularisation, targets, corners."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from drakegait import GaitStudy
+from drakegait.program import physical_hessian as physical
+from drakegait.program.gait_program import GaitProgram
+from drakegait.program.guess import guess_from_reference
+from drakegait.program.lagrangian_hessian import LagrangianHessian
+from drakegait.solvers.condensed.centrality import Targets
+from drakegait.solvers.condensed.convexity import convex_excess
+from drakegait.solvers.condensed.interior_point import InteriorPoint
+from drakegait.solvers.condensed.iterate import Multipliers
+from drakegait.solvers.condensed.regularisation import Regularisation
+from drakegait.solvers.condensed.solve import solve_condensed
+from drakegait.solvers.condensed.system import CondensedSystem
+from drakegait.solvers.monitor import Monitor
+from drakegait.solvers.options import SolverOptions
+
+SMALL = GaitStudy.planar_symmetric(nodes=13, interior_points=(1,) * 4)
+MUSCLES = SMALL.walker.muscles
+
+
+@pytest.fixture(scope="module")
+def program() -> GaitProgram:
+    return GaitProgram(SMALL.formulation())
+
+
+def random_hessians(scale: float = 1.0) -> np.ndarray:
+    values = np.random.default_rng(5).normal(size=(3, MUSCLES.num_muscles, 6, 6))
+    return scale * (values + np.swapaxes(values, 2, 3))
+
+
+def test_with_the_excess_no_muscle_has_negative_curvature() -> None:
+    hessian = random_hessians()
+    excess = convex_excess(hessian, MUSCLES)
+    for part in (excess, hessian + excess):
+        lowest = np.linalg.eigvalsh(part)[..., 0]
+        assert np.all(lowest > -1e-9 * np.abs(part).max(axis=(2, 3)))
+    assert np.linalg.eigvalsh(hessian)[..., 0].max() < 0.0  # there was something to do
+
+
+def test_convex_muscles_need_nothing() -> None:
+    root = random_hessians()
+    convex = root @ np.swapaxes(root, 2, 3)
+    assert np.abs(convex_excess(convex, MUSCLES)).max() < 1e-9 * np.abs(convex).max()
+
+
+class Linearised:
+    """A system at the guess with random multipliers."""
+
+    def __init__(self, program: GaitProgram):
+        random = np.random.default_rng(3)
+        self.system = CondensedSystem(program, LagrangianHessian(program))
+        x = guess_from_reference(program)
+        rows = program.num_constraints
+        equality = program.lower == program.upper
+        stiffness = random.uniform(0.1, 1.0, rows) * ~equality
+        diagonal = random.uniform(0.1, 1.0, program.num_variables)
+        jacobian = self.system.jacobian(x)
+        self.system.linearise(x, 0.1 * random.normal(size=rows), stiffness, diagonal, jacobian)
+
+
+def test_convexity_is_added_as_if_the_muscles_were_convex(
+    program: GaitProgram, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = Linearised(program).system
+    assert before.factor(1e6, convexity=1.0)
+    own = physical._muscles
+
+    def convex(*arguments: object) -> tuple[np.ndarray, np.ndarray]:
+        hessian, first = own(*arguments)
+        return hessian + convex_excess(hessian, MUSCLES), first
+
+    monkeypatch.setattr(physical, "_muscles", convex)
+    after = Linearised(program).system
+    added = after.matrix - before.matrix
+    scale = np.abs(added).max()
+    assert scale > 0.0
+    np.testing.assert_allclose(before._added, added, atol=1e-9 * scale)
+
+
+def test_steps_solve_the_system_with_what_was_added(program: GaitProgram) -> None:
+    system = Linearised(program).system
+    assert system.factor(1e4, convexity=0.5)
+    random = np.random.default_rng(4)
+    b, c = random.normal(size=program.num_variables), random.normal(size=program.num_constraints)
+    x, y = system.solve(b, c)
+    rest_b, rest_c = system._residual(x, y, b, c)
+    assert max(np.abs(rest_b).max(), np.abs(rest_c).max()) < 1e-7
+    half = system._times(x)
+    assert system.factor(1e4)
+    size = system.num_shared
+    lack = (half - system._times(x))[:size]  # what half the convexity does to x
+    np.testing.assert_allclose(lack, 0.5 * system._lack() @ x[:size], atol=1e-9 * abs(lack).max())
+
+
+class Scales:
+    """A system that is positive definite once shift + 2 convexity exceeds `lacking`."""
+
+    def __init__(self, lacking: float):
+        self.lacking = lacking
+        self.tried: list[tuple[float, float]] = []
+
+    def factor(self, shift: float, convexity: float) -> bool:
+        self.tried.append((shift, convexity))
+        return shift + 2.0 * convexity > self.lacking
+
+
+def test_nothing_is_added_where_nothing_is_needed() -> None:
+    system = Scales(-1.0)
+    assert Regularisation(system).factor(creeping=False)
+    assert system.tried == [(0.0, 0.0)]
+
+
+def test_convexity_comes_before_multiples_of_the_identity() -> None:
+    system = Scales(1.0)
+    assert Regularisation(system).factor(creeping=False)
+    assert system.tried == [(0.0, 0.0), (0.0, 1.0)]
+    system = Scales(5.0)
+    assert Regularisation(system).factor(creeping=False)
+    assert system.tried[:2] == [(0.0, 0.0), (0.0, 1.0)]
+    shift, convexity = system.tried[-1]
+    assert convexity == 1.0
+    assert 3.0 < shift <= 3.0 * 100.0
+
+
+def test_a_creeping_solve_takes_little_more_convexity_than_it_must() -> None:
+    system = Scales(0.6)  # 0.3 is the least
+    assert Regularisation(system).factor(creeping=True)
+    shift, convexity = system.tried[-1]
+    assert shift == 0.0
+    assert 0.3 < convexity < 0.6
+
+
+def test_a_failed_search_asks_for_more_until_there_is_no_use() -> None:
+    system = Scales(-1.0)
+    regularisation = Regularisation(system)
+    assert regularisation.factor(creeping=False)
+    shifts = []
+    while regularisation.more():
+        shifts.append(system.tried[-1][0])
+    assert shifts == sorted(shifts)
+    assert len(shifts) < 12
+    assert shifts[-1] > 1e4
+
+
+def test_equal_targets_are_the_barriers_own_gradient() -> None:
+    low, high = np.array([0.5, 2.0, np.inf]), np.array([np.inf, 1.0, 4.0])
+    push = Targets.equal(0.01, 3).push(low, high)
+    np.testing.assert_allclose(push, [-0.02, 0.01 - 0.005, 0.0025])
+
+
+def test_targets_move_only_for_products_that_would_be_far_off() -> None:
+    mu, one = 0.01, np.ones(4)
+    # Products of the multipliers with a distance of 1: in range, too large, too small, no bound.
+    z = Multipliers(np.zeros(0), np.array([mu, 50.0 * mu, 0.01 * mu, 0.0]), np.zeros(4))
+    low = np.array([1.0, 1.0, 1.0, np.inf])
+    start = Targets(np.array([mu, 50.0 * mu, 0.01 * mu, 0.0]), np.zeros(4))  # nothing changes
+    moved = start.corrected(mu, low, np.full(4, np.inf), z, 0.0 * one, 0.1)
+    np.testing.assert_allclose(moved.high, 0.0)
+    assert moved.low[0] == pytest.approx(mu)
+    assert moved.low[1] == pytest.approx(40.0 * mu)  # no more than 10 mu at once
+    assert moved.low[2] == pytest.approx(0.1 * mu)
+    assert moved.low[3] == 0.0
+
+
+def test_corners_narrow_with_the_barrier_and_end_at_their_own_width(program: GaitProgram) -> None:
+    system = CondensedSystem(program, LagrangianHessian(program))
+    x = guess_from_reference(program)
+    method = InteriorPoint(program, system, x, barrier=1e-3, last_barrier=1e-6, push=0.1)
+    widths = [program.smoothing]
+    while not method.at_last_barrier:
+        method.lower_barrier()
+        widths.append(program.smoothing)
+    assert widths[0] > 10.0
+    assert widths == sorted(widths, reverse=True)
+    assert widths[-1] == 1.0
+
+
+@pytest.mark.parametrize("limit", [{"max_iterations": 2}, {"max_iterations": 200}])
+def test_no_program_keeps_wide_corners(program: GaitProgram, limit: dict[str, float]) -> None:
+    options = SolverOptions(**limit)
+    x = guess_from_reference(program)
+    with Monitor(60.0) as monitor:
+        monitor.begin(program)
+        solution = solve_condensed(program, x, options, monitor)
+    assert solution.status == ("converged" if options.max_iterations > 2 else "iteration_limit")
+    assert program.smoothing == 1.0
