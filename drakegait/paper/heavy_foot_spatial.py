@@ -62,8 +62,8 @@ def _dorsiflexion(n: Numbers) -> str:
 _REFERENCES = (
     "The planar pair of 4.2 follows a reference that its own model has made, the spatial pair a "
     "measured one. In brackets: the planar pair against the measured stride, which compares the "
-    "models alone. Not robust: of two runs whose planar walks ended in optima 3 % apart, the other "
-    "said otherwise about reactions and spread."
+    "models alone. Not robust: of three runs whose walks ended in optima up to 3 % apart, one said "
+    "yes about reactions, and one about the spread."
 )
 _REACTIONS = _less("change of reactions", "% BW")
 _SMALLER = _less("mean change of angles", "degrees")
