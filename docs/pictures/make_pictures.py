@@ -91,7 +91,7 @@ def make_part(program: Program, runs: Path, keep: bool, folder: Path) -> None:
         save(replay_picture(Gait.load(out / "gait.nc"), folder), "first_walk_replay")
     elif program.name == "own_data":
         page = out / "subject_quality.html"
-        save(picture_of(page, (1100, 1250), folder), "own_data_quality")
+        save(picture_of(page, (1100, 1250), folder), "own_data_quality", colours=64)
     elif program.name == "heavy_foot":
         gaits = [Gait.load(out / "normal.nc"), Gait.load(out / "heavy.nc")]
         labels = ["no weight", "2 kg on the right foot"]
