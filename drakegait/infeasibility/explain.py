@@ -11,8 +11,8 @@ and a change or two that help (`knobs`), each verified by a solve and its check.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from drakegait.errors import InvalidInput
 from drakegait.gait import Gait
@@ -40,7 +40,11 @@ from drakegait.study_rules import check_number
 TIME_LIMIT = 600.0  # [s]
 MOST_REMEDIES = 2
 _FOR_CONFLICT = 0.6  # of the time; the rest is for remedies
-_MAX_ITERATIONS = 250  # of a solve that verifies
+_MAX_ITERATIONS = 200  # of a solve that verifies; walks take 40 to 150
+_SHARE, _LEAST_SHARE = 0.25, 10.0  # of the time that is left, and [s], that one such solve may take
+_MAX_HALVINGS = 4  # between a change that is too small and one that is enough
+# Ends of a solve that was still on its way.
+_ON_ITS_WAY = ("iteration_limit", "acceptable")
 _LEAST_TIME = 1.0  # [s] without which no solve is begun
 
 
@@ -55,7 +59,8 @@ def explain(
     """Find out why the solve of `gait` did not converge.
 
     Args:
-        gait: not converged; what it moves like does not matter, only what was asked.
+        gait: not converged. Where its solve ended at the iteration limit, it is continued first;
+            otherwise only what was asked matters.
         time_limit: wall time for all of it [s], 1 to 1e6; what is known by then is returned,
             as after Ctrl-C.
         remedies: how many changes to look for, 0 to 5.
@@ -73,7 +78,7 @@ def explain(
         raise InvalidInput("remedies", remedies, "a whole number from 0 to 5")
     options = SolverOptions(max_iterations=_MAX_ITERATIONS)
     search = _Search(gait.study, options.replace(**choices), time_limit, report)
-    return search.run(remedies)
+    return search.run(remedies, gait if gait.outcome.status in _ON_ITS_WAY else None)
 
 
 class _Search:
@@ -117,9 +122,14 @@ class _Search:
 
     # Steps -------------------------------------------------------------------------------
 
-    def run(self, most: int) -> Explanation:
+    def run(self, most: int, unfinished: Gait | None) -> Explanation:
         """The explanation, complete or as far as time allows."""
         with self._monitor:
+            if unfinished is not None:
+                self._say("continuing the solve")
+                gait, _ = self._walk(self._study, (unfinished,))
+                if gait is not None:
+                    return self._told(Explanation(WALKS, gait=gait))
             self._say("making all laws elastic")
             program = GaitProgram(self._study.formulation())
             start = program.values(guess_from_reference(program))
@@ -146,9 +156,9 @@ class _Search:
     def _solved(self, relaxation: Relaxation, least: Relaxed) -> Explanation:
         """All laws can be held: the study itself, from there."""
         self._say("solving again from a walk that holds all laws")
-        gait = self._walk(self._study, relaxation, least)
+        gait, why = self._walk(self._study, (_as_guess(relaxation, least), None))
         if gait is None:
-            return Explanation(UNDECIDED)
+            return Explanation(UNDECIDED, tried=(why,))
         return Explanation(WALKS, gait=gait)
 
     def _explained(self, relaxation: Relaxation, conflict: Conflict, most: int) -> Explanation:
@@ -158,16 +168,18 @@ class _Search:
         }
         place = _place(relaxation, enough, conflict)
         muscular = place if place is not None and place.law == MUSCLES else None
-        found, tried = [], []
         short = () if muscular is None else short_muscles(relaxation, enough[MUSCLES])
+        found: list[_Turned] = []
+        tried: list[str] = []
         for knob in knobs_for(relaxation, enough, muscular, short):
             if len(found) == most or self._ended is not None:
                 break
-            if any(knob.law == other.law for other, _ in found):
+            if any(knob.law == other.knob.law for other in found):
                 continue
-            remedy = self._turn(knob, relaxation, enough[knob.law], tried)
-            if remedy is not None:
-                found.append((knob, remedy))
+            turned = self._turn(knob, _as_guess(relaxation, enough[knob.law]), tried)
+            if turned is not None:
+                found.append(turned)
+        found = [self._milder(turned) for turned in found]
         return Explanation(
             CONFLICT,
             conflict=conflict.laws,
@@ -176,76 +188,91 @@ class _Search:
             smallest=conflict.smallest,
             unique=conflict.unique,
             place=place,
-            remedies=tuple(remedy for _, remedy in found),
+            remedies=tuple(turned.remedy for turned in found),
+            settled=conflict.least.converged,
             tried=tuple(tried),
         )
 
-    def _turn(
-        self, knob: Knob, relaxation: Relaxation, relaxed: Relaxed, tried: list[str]
-    ) -> Remedy | None:
-        """The mildest of the knob's values with which a walk is found."""
-        failed: float | None = None
-        best: tuple[float, Remedy] | None = None
+    def _turn(self, knob: Knob, near: Gait, tried: list[str]) -> _Turned | None:
+        """The first of the knob's values with which a walk is found."""
+        failed, why = knob.now, ""
         for value in knob.values:
-            remedy = self._try(knob, value, relaxation, relaxed)
-            if remedy is not None:
-                best = value, remedy
-                break
+            study = changed_study(knob, value)
+            if study is None:
+                continue
+            words = knob.words(value)
+            self._say(f"solving {words}")
+            gait, why = self._walk(study, (near, None))
+            if gait is not None:
+                return _Turned(knob, failed, value, Remedy(words, study, gait))
             if self._ended is not None:
                 return None
             failed = value
-        if best is None:
-            if failed is not None:
-                tried.append(knob.words(failed))
-            return None
-        while failed is not None and self._ended is None:
-            value = knob.middle(failed, best[0])
-            if value is None:
+        if why:
+            tried.append(f"{knob.words(failed)} ({why})")
+        return None
+
+    def _milder(self, turned: _Turned) -> _Turned:
+        """The mildest change that is enough, by halving; each walk starts from the last."""
+        knob = turned.knob
+        for _ in range(_MAX_HALVINGS):
+            value = knob.middle(turned.failed, turned.value)
+            study = None if value is None else changed_study(knob, value)
+            if value is None or study is None or self._ended is not None:
                 break
-            remedy = self._try(knob, value, relaxation, relaxed)
-            if remedy is None:
-                failed = value
+            words = knob.words(value)
+            self._say(f"solving {words}")
+            gait, _ = self._walk(study, (turned.remedy.gait,))
+            if gait is None:
+                turned = replace(turned, failed=value)
             else:
-                best = value, remedy
-        return best[1]
+                turned = replace(turned, value=value, remedy=Remedy(words, study, gait))
+        return turned
 
-    def _try(
-        self, knob: Knob, value: float, relaxation: Relaxation, relaxed: Relaxed
-    ) -> Remedy | None:
-        study = changed_study(knob, value)
-        if study is None:
-            return None
-        words = knob.words(value)
-        self._say(f"solving {words}")
-        gait = self._walk(study, relaxation, relaxed)
-        return None if gait is None else Remedy(words, study, gait)
+    def _walk(
+        self, study: GaitStudy, guesses: Sequence[Gait | None]
+    ) -> tuple[Gait | None, str]:
+        """A walk of `study`, converged and with its check passed, and else why there is none."""
+        why = "no time was left"
+        for guess in guesses:
+            if self._ended is not None:
+                break
+            left = self._monitor.remaining
+            time_limit = min(max(_SHARE * left, _LEAST_SHARE), max(left, _LEAST_TIME))
+            options = self._options.replace(time_limit=time_limit)
+            gait = solve(study, guess=guess, options=options, report=self._progress)
+            self._interrupted |= gait.outcome.status == "interrupted"
+            if not gait.converged:
+                why = "did not converge"
+            elif gait.report is None or not gait.report.passed:
+                items = () if gait.report is None else gait.report.items
+                failed = ", ".join(item.label for item in items if not item.passed)
+                why = f"converged, but its check failed: {failed}"
+            else:
+                return gait, ""
+        return None, why
 
-    def _walk(self, study: GaitStudy, relaxation: Relaxation, relaxed: Relaxed) -> Gait | None:
-        """A walk of `study`, converged and with its check passed, from a relaxed one."""
-        if self._ended is not None:
-            return None
-        guess = _as_guess(relaxation, relaxed)
-        remaining = max(self._monitor.remaining, _LEAST_TIME)
-        gait = solve(
-            study, guess=guess, options=self._options.replace(time_limit=remaining),
-            report=self._progress,
-        )  # fmt: skip
-        self._interrupted |= gait.outcome.status == "interrupted"
-        good = gait.converged and gait.report is not None and gait.report.passed
-        return gait if good else None
+
+@dataclass(frozen=True, eq=False)
+class _Turned:
+    """A change that is enough, and the next milder one that is not."""
+
+    knob: Knob
+    failed: float
+    value: float
+    remedy: Remedy
 
 
 def _place(
     relaxation: Relaxation, enough: dict[str, Relaxed], conflict: Conflict
 ) -> Place | None:
-    """Where the muscles are too weak, or else where the first law breaks that alone is enough."""
+    """Where the muscles are too weak, or else where a law breaks that alone is enough."""
     laws = sorted(enough, key=lambda name: name != MUSCLES)
     laws += [name for name in conflict.alone if name not in laws and name in conflict.laws]
-    for law in laws:
-        place = place_of(relaxation, conflict.alone[law], law)
-        if place is not None:
-            return place
-    return None
+    places = [place_of(relaxation, conflict.alone[law], law) for law in laws]
+    known = [place for place in places if place is not None]
+    # What has an instant tells more than what holds for the stride.
+    return min(known, key=lambda place: not place.when, default=None)
 
 
 def _as_guess(relaxation: Relaxation, relaxed: Relaxed) -> Gait:

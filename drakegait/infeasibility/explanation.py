@@ -48,7 +48,9 @@ class Explanation:
         unique: whether every conflict of this study contains all of them.
         place: where the walk has to break a law, first of all those of muscles; None if unknown.
         remedies: changes that were verified by solving, at most two.
-        tried: changes in words with which no walk was found.
+        tried: changes in words with which no walk was found, and why in brackets; for
+            `"undecided"` why alone.
+        settled: whether the walk that breaks the laws least was found to its optimum.
         gait: the walk that was found after all; None for other verdicts.
         ended: `"time_limit"` or `"interrupted"` if it ended early, else None.
         wall_time: seconds.
@@ -63,6 +65,7 @@ class Explanation:
     place: Place | None = None
     remedies: tuple[Remedy, ...] = ()
     tried: tuple[str, ...] = ()
+    settled: bool = True
     gait: Gait | None = None
     ended: str | None = None
     wall_time: float = 0.0
@@ -76,9 +79,10 @@ class Explanation:
                 "Feasible after all: from another start a walk was found that meets every law."
             )
         elif self.verdict == UNDECIDED:
+            why = f" ({self.tried[-1]})" if self.tried else ""
             found.append(
-                "All laws can be held together, as far as can be told, but no solve converged "
-                "from there: try --starts, more nodes or more iterations."
+                "All laws can be held together, as far as can be told, but no walk was found "
+                f"from there{why}: try --starts, more nodes or more iterations."
             )
         elif self.verdict == CONFLICT:
             found += self._of_conflict()
@@ -98,6 +102,11 @@ class Explanation:
             found.append(f"Cannot all hold: {stated}{others}{least}.")
             if self.smallest and not self.unique:
                 found.append("There are further conflicts beside this one.")
+            if not self.settled:
+                found.append(
+                    "This is a hint, not more: the walk that breaks the laws least was not found "
+                    "to its optimum."
+                )
         if self.remedies:
             words = " or ".join(remedy.words for remedy in self.remedies)
             found.append(f"Feasible {words} (solved again, check passed).")
@@ -129,6 +138,7 @@ class Explanation:
             },
             "remedies": [remedy.words for remedy in self.remedies],
             "tried": list(self.tried),
+            "settled": self.settled,
             "ended": self.ended,
             "wall_time_s": self.wall_time,
         }  # fmt: skip

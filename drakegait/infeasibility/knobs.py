@@ -15,7 +15,15 @@ import numpy as np
 
 from drakegait.errors import InvalidInput
 from drakegait.infeasibility.conflict import Relaxation, Relaxed
-from drakegait.infeasibility.laws import ASYMMETRY, FRICTION, MUSCLES, RANGE, SPEED, without_side
+from drakegait.infeasibility.laws import (
+    ASYMMETRY,
+    FRICTION,
+    MUSCLES,
+    RANGE,
+    SPEED,
+    without_side,
+    words_of_limits,
+)
 from drakegait.infeasibility.place import Place
 from drakegait.study import GaitStudy
 from drakegait.walker import coordinates
@@ -26,6 +34,7 @@ _SPEED_STEP, _FRICTION_STEP, _RATIO_STEP = 0.05, 0.05, 0.05  # [m/s], [-], [-]
 _LEAST_LOAD = 0.05  # of the body weight: below, the ratio of forces means nothing
 _STRENGTHS = (5, 10, 15, 20, 30, 40, 60, 80, 120, 160, 240, 320, 480, 640, 900)  # [% more]
 _USUAL_SPEED = 1.1  # relative to the reference: faster is unusual
+_NEARLY = 0.1  # of a change: finer is of no use to anyone
 _MOST_TOLERANCE = 5.0  # times the study's; with more it is no longer walking
 
 
@@ -35,6 +44,7 @@ class Knob:
 
     Attributes:
         law: the law that it eases.
+        now: the value of the study itself, in the same terms.
         values: what to try, mildest first.
         study: the changed study; raises InvalidInput where the value is out of range.
         words: the change, to be read after "feasible".
@@ -43,6 +53,7 @@ class Knob:
     """
 
     law: str
+    now: float
     values: Sequence[float]
     study: Callable[[float], GaitStudy]
     words: Callable[[float], str]
@@ -78,9 +89,11 @@ def knobs_for(
 
 
 def _middle(step: float) -> Callable[[float, float], float | None]:
-    """Half way between two values in steps; None if they are neighbours."""
+    """Half way between two values in steps; None if they are neighbours or nearly the same."""
 
     def middle(failed: float, good: float) -> float | None:
+        if abs(good - failed) < _NEARLY * abs(good):
+            return None
         half = round(0.5 * (failed + good) / step) * step
         apart = min(abs(half - failed), abs(half - good))
         return round(half, 6) if apart > 0.5 * step else None
@@ -99,10 +112,10 @@ def _speed(relaxation: Relaxation, relaxed: Relaxed) -> list[Knob]:
     first = first * _SPEED_STEP + (_SPEED_STEP if way > 0 else 0.0)
     if abs(first - study.speed) < 0.5 * _SPEED_STEP:
         first += step
-    tries = [round(first + k * step, 3) for k in (0, 1, 3, 6)]
+    tries = [round(first + k * step, 3) for k in (0, 2, 5)]
     return [
         Knob(
-            SPEED, tries, lambda value: study.replace(speed=value),
+            SPEED, study.speed, tries, lambda value: study.replace(speed=value),
             lambda value: f"at {value:g} m/s", _middle(_SPEED_STEP),
             study.speed > _USUAL_SPEED * study.reference_walk.speed,
         )
@@ -117,10 +130,10 @@ def _friction(relaxation: Relaxation, relaxed: Relaxed) -> list[Knob]:
     now = study.contact.friction
     needed = max(float(ratio.max(initial=0.0)), now + 0.2 * _FRICTION_STEP)
     first = math.ceil(needed / _FRICTION_STEP - 1e-6) * _FRICTION_STEP
-    tries = [round(first + k * _FRICTION_STEP, 3) for k in (0, 1, 3, 6)]
+    tries = [round(first + k * _FRICTION_STEP, 3) for k in (0, 2, 5)]
     return [
         Knob(
-            FRICTION, tries, lambda value: study.with_settings(friction=value),
+            FRICTION, now, tries, lambda value: study.with_settings(friction=value),
             lambda value: f"with friction of {value:g}", _middle(_FRICTION_STEP),
             now < ContactSettings().friction,
         )
@@ -151,7 +164,7 @@ def _asymmetry(relaxation: Relaxation, relaxed: Relaxed) -> list[Knob]:
         towards = math.floor if item.ratio > 1.0 else math.ceil
         rounded = [towards(x / _RATIO_STEP) * _RATIO_STEP for x in (near, 0.5 * (1.0 + near))]
         tries = list(dict.fromkeys(round(x, 3) for x in (*rounded, 1.0) if x != item.ratio))
-        found.append(Knob(ASYMMETRY, tries, change, words, _middle(_RATIO_STEP), True))
+        found.append(Knob(ASYMMETRY, item.ratio, tries, change, words, _middle(_RATIO_STEP), True))
     return found
 
 
@@ -168,7 +181,7 @@ def _range(relaxation: Relaxation, relaxed: Relaxed, law: str) -> list[Knob]:
             angle = motion[:, coordinates.names(kind).index(limit.coordinate)]
             low = max(low, limit.low - float(angle.min()))
             high = max(high, float(angle.max()) - limit.high)
-    unit, factor = ("cm", 0.01) if base in ("hat_y", "hat_z") else ("degrees", math.pi / 180.0)
+    factor = 0.01 if base in ("hat_y", "hat_z") else math.pi / 180.0
     needed = max(low, high)
     if needed <= 0.0:
         return []
@@ -181,8 +194,8 @@ def _range(relaxation: Relaxation, relaxed: Relaxed, law: str) -> list[Knob]:
 
     return [
         Knob(
-            law, list(dict.fromkeys(tries)), change,
-            lambda value: f"with {value:g} {unit} more {base.replace('_', ' ')}",
+            law, 0.0, list(dict.fromkeys(tries)), change,
+            lambda value: f"with {words_of_limits(change(value).all_limits, base)}",
             _middle(1.0), True,
         )
     ]  # fmt: skip
@@ -208,7 +221,7 @@ def _strengths(study: GaitStudy, place: Place, short: Sequence[str]) -> list[Kno
     """More strength of the muscles that are saturated where it lacks, or of all."""
     percent = 100.0 * place.missing / max(place.moment, 1e-3)
     rung = next((k for k, x in enumerate(_STRENGTHS) if x >= 0.5 * percent), len(_STRENGTHS) - 1)
-    tries = [*_STRENGTHS[max(rung - 1, 0) :: 2][:4]]
+    tries = [*_STRENGTHS[rung::2][:3]]
     weak = bool(study.strength) or any(isinstance(x, Weakness) for x in study.disorders)
     known = dict(zip(study.walker.muscles.names, study.walker.muscles.abbreviations, strict=True))
     chosen = list(short or place.helpers)
@@ -218,7 +231,7 @@ def _strengths(study: GaitStudy, place: Place, short: Sequence[str]) -> list[Kno
     everyone = list(dict.fromkeys(without_side(name) for name in known))
     return [
         Knob(
-            MUSCLES, tries, lambda value, names=names: _stronger(study, names, value),
+            MUSCLES, 0.0, tries, lambda value, names=names: _stronger(study, names, value),
             lambda value, words=words: f"with {value:g} % more strength of {words}",
             _middle(5.0), weak,
         )
@@ -254,7 +267,7 @@ def _tolerance(study: GaitStudy, place: Place) -> list[Knob]:
         return []
     return [
         Knob(
-            MUSCLES, tries, lambda value: study.with_settings(moment_tolerance=value),
+            MUSCLES, now, tries, lambda value: study.with_settings(moment_tolerance=value),
             lambda value: f"if moments may be off by {value:g} N m", _middle(1.0), False,
         )
     ]  # fmt: skip

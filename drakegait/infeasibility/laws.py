@@ -6,22 +6,24 @@ more than any excitation could do; excitations themselves therefore stay within 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from drakegait.errors import InvalidInput
 from drakegait.program.design import STEP_LENGTHS, STEP_WIDTHS, STRIDE_TIMES
+from drakegait.program.formulation import JointLimit
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.timing import TimingRows
-from drakegait.walker.coordinates import names as coordinate_names
 
 MUSCLES, SPEED, FRICTION, ASYMMETRY = "muscles", "speed", "friction", "asymmetry"
 BALANCE, FEET, CLEARANCE, PUSH = "balance", "feet", "clearance", "push"
 STEPS, PHASES, RANGE = "steps", "phase durations", "range of "
-# A row of friction is in squared body weights, of which a tenth is much and 2e-4 (1.4 % of the body
-# weight) little; two per cent of a tolerance or typical size are little elsewhere.
-_FRICTION_PRICE, _FRICTION_HELD, _HELD = 10.0, 2e-4, 0.02
+SIDES = {"_r": "right", "_l": "left"}
+# Of a row of friction a tenth of the squared body weight is much, and 2e-4 of its own size (1.4 %
+# of the body weight on a usual ground) little; elsewhere two per cent of a tolerance or typical size.
+_FRICTION_PRICE, _FRICTION_HELD, _HELD = 10.0, 2e-4, 0.02  # the price of a squared body weight
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,13 +66,16 @@ def laws_of(program: GaitProgram) -> list[Law]:
     for number, name in enumerate(program.design.names):
         variables.setdefault(_law_of_variable(program, number, name), []).append(number)
     words = _words(program)
+    sizes = program.row_scale[[number for number, name in enumerate(program.row_names)
+                               if name.startswith("friction |")]]  # fmt: skip
+    price = _FRICTION_PRICE * float(sizes.max(initial=0.0)) / formulation.body_weight**2
     known = [name for name in words if name in rows or name in variables]
     return [
         Law(
             name, *words[name],
             _mask(rows.get(name, ()), program.num_constraints),
             _mask(variables.get(name, ()), program.num_variables),
-            *((_FRICTION_PRICE, _FRICTION_HELD) if name == FRICTION else (1.0, _HELD)),
+            *((price, _FRICTION_HELD) if name == FRICTION else (1.0, _HELD)),
         )
         for name in known
     ]  # fmt: skip
@@ -117,11 +122,8 @@ def _law_of_variable(program: GaitProgram, number: int, name: str) -> str:
 def _words(program: GaitProgram) -> dict[str, tuple[str, bool]]:
     """Words of each group and whether a study states it, in order."""
     formulation = program.formulation
-    ranges = {}
-    for base in coordinate_names("spatial"):
-        limits = [x for x in formulation.limits if x.coordinate == base]
-        for limit in limits:
-            ranges[RANGE + without_side(base)] = (_range_words(base, limit.low, limit.high), True)
+    limited = {without_side(limit.coordinate): limit for limit in formulation.limits}
+    ranges = {RANGE + base: (words_of_limits(formulation.limits, base), True) for base in limited}
     ratios = " and ".join(item.describe() for item in formulation.asymmetries)
     shortest, longest = (10.0 * x for x in _phase_ends(program))
     return {
@@ -148,6 +150,18 @@ def _words(program: GaitProgram) -> dict[str, tuple[str, bool]]:
 def _phase_ends(program: GaitProgram) -> tuple[float, float]:
     timing: TimingRows = program.timing
     return float(timing.lower[1]) / 100.0, float(timing.upper[1]) / 100.0
+
+
+def words_of_limits(limits: Sequence[JointLimit], base: str) -> str:
+    """The ranges of a joint's coordinate; of each side where the sides differ."""
+    own = [limit for limit in limits if without_side(limit.coordinate) == base]
+    sided = {side for limit in own for side in SIDES if limit.coordinate.endswith(side)}
+    alike = len({(limit.low, limit.high) for limit in own}) == 1 and len(sided) != 1
+    words = []
+    for limit in own:
+        side = "" if alike else SIDES.get(limit.coordinate[-2:], "")
+        words.append(f"{side} {_range_words(base, limit.low, limit.high)}".strip())
+    return " and ".join(dict.fromkeys(words))
 
 
 def _range_words(coordinate: str, low: float, high: float) -> str:

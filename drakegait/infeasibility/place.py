@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.infeasibility.conflict import Relaxation, Relaxed
-from drakegait.infeasibility.laws import MUSCLES, without_side
+from drakegait.infeasibility.laws import MUSCLES, SIDES, without_side
 from drakegait.program.gait_program import GaitProgram
 from drakegait.walker import coordinates, feet
 
@@ -24,7 +24,6 @@ _LEG_DOES = (  # the right leg in each phase; the left four phases later
     "takes the load", "comes to stand flat", "stands alone", "rises on its toes",
     "pushes off", "pushes off", "swings", "swings",
 )  # fmt: skip
-_SIDES = {"_r": "right", "_l": "left"}
 
 
 @dataclass(frozen=True)
@@ -129,7 +128,7 @@ def _two_digits(number: float) -> str:
 def _sided(name: str) -> str:
     """`toe_r z` -> right toe."""
     part = name.split()[0]
-    side = _SIDES.get(part[-2:], "")
+    side = SIDES.get(part[-2:], "")
     return f"{side} {without_side(part).replace('_', ' ')}".strip()
 
 
@@ -180,7 +179,7 @@ def _when(program: GaitProgram, point: int, name: str) -> str:
     if not side:
         return words
     leg = (phase + (4 if side == "_l" else 0)) % feet.NUM_PHASES
-    return f"{words}; the {_SIDES[side]} leg {_LEG_DOES[leg]}"
+    return f"{words}; the {SIDES[side]} leg {_LEG_DOES[leg]}"
 
 
 def _of_muscles(
@@ -201,7 +200,7 @@ def _of_muscles(
     order = full[np.argsort(-np.abs(arms * inputs[:, 0])[full])]
     return Place(
         MUSCLES,
-        f"{_SIDES[coordinate[-2:]]} {turn}",
+        f"{SIDES[coordinate[-2:]]} {turn}",
         when,
         percent,
         abs(lack),

@@ -23,8 +23,10 @@ from drakegait.program.formulation import Formulation
 from drakegait.program.local_rows import DenseRows
 from drakegait.program.local_state import LocalState
 from drakegait.walker import feet
+from drakegait.walker.feet import ContactSettings
 
 _REGULARISATION = 1e-6  # of squared body weight, docs/formulation.md 6.9
+_USUAL = ContactSettings().friction
 
 
 def _foot_rows(foot: int, *rows: int) -> list[int]:
@@ -32,15 +34,21 @@ def _foot_rows(foot: int, *rows: int) -> list[int]:
 
 
 class Friction(DenseRows):
-    """One quadratic cone per foot, divided by squared body weight."""
+    """One quadratic cone per foot, divided by squared body weight.
+
+    On a ground more slippery than usual the divisor shrinks with the squared friction: what a
+    solver leaves of a row (1e-3) would else be more than such a ground bears.
+    """
 
     kind = "friction"
     row_names = ("foot_r", "foot_l")
-    units = ("squared body weight",) * 2
+    units = ("N^2",) * 2
 
     def __init__(self, formulation: Formulation, points: ControlPoints):
         super().__init__(formulation, points)
-        self.scale = np.full(2, formulation.body_weight**2)
+        slippery = min(1.0, formulation.contact.friction / _USUAL)
+        self.scale = np.full(2, (slippery * formulation.body_weight) ** 2)
+        self._least = _REGULARISATION / slippery**2
         self.lower, self.upper = np.zeros(2), np.full(2, np.inf)
         loaded = points.loaded[:, : feet.NUM_ROWS]
         by_foot = loaded.reshape(points.num, 2, feet.ROWS_PER_FOOT)
@@ -54,7 +62,7 @@ class Friction(DenseRows):
         force = state.ground_reactions
         grip = (self.formulation.contact.friction * force[:, :, 2]) ** 2
         slip = force[:, :, 0] ** 2 + force[:, :, 1] ** 2
-        return (grip - slip) / self.scale - _REGULARISATION
+        return (grip - slip) / self.scale - self._least
 
     def partials(self, state: LocalState) -> Partials:
         force = state.ground_reactions
