@@ -12,7 +12,7 @@ import pytest
 
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
-from drakegait.solve import _solver
+from drakegait.solve import _solver, solve
 from drakegait.solvers.monitor import Monitor
 from drakegait.solvers.options import SOLVERS, SolverOptions
 from drakegait.solvers.solution import Solution
@@ -61,3 +61,19 @@ def test_all_find_the_same_cost(program, optimum, start, solver):
     assert found.status == "converged", found.detail
     assert program.violations(found.x).max() < 5e-3
     assert program.cost(found.x) == pytest.approx(program.cost(optimum), rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def planar():
+    """The planar problem of the paper's section 4.2: two independent legs, 18 nodes."""
+    gait = solve(GaitStudy.planar(18), refine=False)
+    assert gait.converged
+    return gait
+
+
+@pytest.mark.parametrize("solver", [name for name in SOLVERS if name != "condensed"])
+def test_the_others_stay_at_the_planar_answer(planar, solver):
+    found = solve(planar.study, guess=planar, solver=solver, refine=False, time_limit=300.0)
+    assert found.converged, found.outcome.message
+    assert found.outcome.iterations > 0
+    assert found.cost["total"] == pytest.approx(planar.cost["total"], rel=1e-3)
