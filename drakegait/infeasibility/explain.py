@@ -149,6 +149,8 @@ class _Search:
 
     def _told(self, found: Explanation) -> Explanation:
         ended = self._ended
+        if found.verdict == CONFLICT and not found.conflict and ended is not None:
+            found = Explanation(UNKNOWN)
         if ended is None and self._elastic.stop_reason == "time_limit" and not found.smallest:
             ended = "time_limit" if found.verdict in (CONFLICT, UNKNOWN) else None
         return replace(found, ended=ended, wall_time=self._monitor.elapsed)

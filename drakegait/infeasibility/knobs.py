@@ -88,11 +88,11 @@ def knobs_for(
     return sorted(found, key=lambda knob: not knob.unusual)
 
 
-def _middle(step: float) -> Callable[[float, float], float | None]:
+def _middle(step: float, now: float = 0.0) -> Callable[[float, float], float | None]:
     """Half way between two values in steps; None if they are neighbours or nearly the same."""
 
     def middle(failed: float, good: float) -> float | None:
-        if abs(good - failed) < _NEARLY * abs(good):
+        if abs(good - failed) < _NEARLY * abs(good - now):
             return None
         half = round(0.5 * (failed + good) / step) * step
         apart = min(abs(half - failed), abs(half - good))
@@ -116,7 +116,7 @@ def _speed(relaxation: Relaxation, relaxed: Relaxed) -> list[Knob]:
     return [
         Knob(
             SPEED, study.speed, tries, lambda value: study.replace(speed=value),
-            lambda value: f"at {value:g} m/s", _middle(_SPEED_STEP),
+            lambda value: f"at {value:g} m/s", _middle(_SPEED_STEP, study.speed),
             study.speed > _USUAL_SPEED * study.reference_walk.speed,
         )
     ]  # fmt: skip
@@ -134,7 +134,7 @@ def _friction(relaxation: Relaxation, relaxed: Relaxed) -> list[Knob]:
     return [
         Knob(
             FRICTION, now, tries, lambda value: study.with_settings(friction=value),
-            lambda value: f"with friction of {value:g}", _middle(_FRICTION_STEP),
+            lambda value: f"with friction of {value:g}", _middle(_FRICTION_STEP, now),
             now < ContactSettings().friction,
         )
     ]  # fmt: skip
@@ -164,7 +164,7 @@ def _asymmetry(relaxation: Relaxation, relaxed: Relaxed) -> list[Knob]:
         towards = math.floor if item.ratio > 1.0 else math.ceil
         rounded = [towards(x / _RATIO_STEP) * _RATIO_STEP for x in (near, 0.5 * (1.0 + near))]
         tries = list(dict.fromkeys(round(x, 3) for x in (*rounded, 1.0) if x != item.ratio))
-        found.append(Knob(ASYMMETRY, item.ratio, tries, change, words, _middle(_RATIO_STEP), True))
+        found.append(Knob(ASYMMETRY, item.ratio, tries, change, words, _middle(_RATIO_STEP, item.ratio), True))
     return found
 
 
@@ -268,7 +268,7 @@ def _tolerance(study: GaitStudy, place: Place) -> list[Knob]:
     return [
         Knob(
             MUSCLES, now, tries, lambda value: study.with_settings(moment_tolerance=value),
-            lambda value: f"if moments may be off by {value:g} N m", _middle(1.0), False,
+            lambda value: f"if moments may be off by {value:g} N m", _middle(1.0, now), False,
         )
     ]  # fmt: skip
 

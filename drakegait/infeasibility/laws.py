@@ -22,7 +22,8 @@ BALANCE, FEET, CLEARANCE, PUSH = "balance", "feet", "clearance", "push"
 STEPS, PHASES, RANGE = "steps", "phase durations", "range of "
 SIDES = {"_r": "right", "_l": "left"}
 # Of a row of friction a tenth of the squared body weight is much, and 2e-4 of its own size (1.4 %
-# of the body weight on a usual ground) little; elsewhere two per cent of a tolerance or typical size.
+# of the body weight on a usual ground) little; elsewhere two per cent of a tolerance or typical
+# size.
 _FRICTION_PRICE, _FRICTION_HELD, _HELD = 10.0, 2e-4, 0.02  # the price of a squared body weight
 
 
