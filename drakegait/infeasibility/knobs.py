@@ -164,7 +164,8 @@ def _asymmetry(relaxation: Relaxation, relaxed: Relaxed) -> list[Knob]:
         towards = math.floor if item.ratio > 1.0 else math.ceil
         rounded = [towards(x / _RATIO_STEP) * _RATIO_STEP for x in (near, 0.5 * (1.0 + near))]
         tries = list(dict.fromkeys(round(x, 3) for x in (*rounded, 1.0) if x != item.ratio))
-        found.append(Knob(ASYMMETRY, item.ratio, tries, change, words, _middle(_RATIO_STEP, item.ratio), True))
+        middle = _middle(_RATIO_STEP, item.ratio)
+        found.append(Knob(ASYMMETRY, item.ratio, tries, change, words, middle, True))
     return found
 
 

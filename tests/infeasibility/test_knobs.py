@@ -13,8 +13,8 @@ from drakegait.infeasibility.conflict import Relaxed
 from drakegait.infeasibility.knobs import changed_study, knobs_for
 from drakegait.infeasibility.laws import words_of_limits
 from drakegait.infeasibility.place import Place
-from drakegait.program.gait_program import GaitProgram
 from drakegait.program.formulation import JointLimit
+from drakegait.program.gait_program import GaitProgram
 from drakegait.study import GaitStudy
 from drakegait.walker.disorders import Asymmetry, LimitedRange, Weakness
 
