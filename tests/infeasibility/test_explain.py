@@ -12,6 +12,7 @@ from infeasibility_cases import STUDIES, TINY, limited, relaxation_of, weak
 from drakegait.errors import InvalidInput
 from drakegait.gait import Gait
 from drakegait.infeasibility import conflict as conflict_module
+from drakegait.infeasibility import explain as explain_module
 from drakegait.infeasibility.explain import explain
 from drakegait.infeasibility.explanation import Explanation
 from drakegait.infeasibility.laws import laws_of
@@ -74,6 +75,7 @@ def test_a_whole_explanation_ends_with_a_remedy_that_walks(monkeypatch):
         return [law for law in laws_of(program) if law.name in asked]
 
     monkeypatch.setattr(conflict_module, "laws_of", stated)
+    monkeypatch.setattr(explain_module, "_MAX_HALVINGS", 1)
     study = CASES["too weak"][0]
     found = explain(unsolved(study), remedies=1)
     assert (found.verdict, found.ended) == ("conflict", None)
