@@ -130,6 +130,8 @@ class _Search:
                 gait, _ = self._walk(self._study, (unfinished,))
                 if gait is not None:
                     return self._told(Explanation(WALKS, gait=gait))
+                if self._ended is not None:
+                    return self._told(Explanation(UNKNOWN))
             self._say("making all laws elastic")
             program = GaitProgram(self._study.formulation())
             start = program.values(guess_from_reference(program))
