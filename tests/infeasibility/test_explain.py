@@ -144,7 +144,8 @@ def test_out_of_time_it_says_that_nothing_is_known():
 
 def test_ctrl_c_while_the_solve_is_continued_ends_at_once(monkeypatch):
     asked = unsolved(TINY, "iteration_limit")
-    monkeypatch.setattr(explain_module, "solve", lambda study, **more: unsolved(study, "interrupted"))
+    ended = unsolved(TINY, "interrupted")
+    monkeypatch.setattr(explain_module, "solve", lambda study, **more: ended)
     monkeypatch.setattr(explain_module, "Relaxation", None)  # nothing else may be begun
     found = explain(asked)
     assert (found.verdict, found.ended) == ("unknown", "interrupted")
