@@ -13,7 +13,7 @@ from drakegait.commands.screen import ProgressDisplay, console
 from drakegait.errors import BadFile
 from drakegait.gait import Gait
 from drakegait.infeasibility.explain import MOST_REMEDIES, explain
-from drakegait.infeasibility.explanation import UNKNOWN, Explanation
+from drakegait.infeasibility.explanation import UNKNOWN, WALKS, Explanation
 
 EXPLANATION = "explanation"  # key in summary.json
 FEASIBLE_FILE, REMEDY_FILE = "feasible.nc", "remedy_{}.nc"
@@ -39,7 +39,8 @@ def explain_gait(
     """Explain `gait`, print what was found and save the walks in `folder`."""
     with ProgressDisplay(screen) as display:
         found = explain(gait, time_limit=time_limit, remedies=remedies, report=display.task)
-    screen.print("Why there is no walk:", style="bold")
+    title = "There is a walk:" if found.verdict == WALKS else "Why no walk was found:"
+    screen.print(title, style="bold")
     for sentence in found.sentences:
         screen.print(sentence, markup=False, soft_wrap=True)
     saved = _save(found, folder)

@@ -42,7 +42,7 @@ MOST_REMEDIES = 2
 _FOR_CONFLICT = 0.6  # of the time; the rest is for remedies
 _MAX_ITERATIONS = 200  # of a solve that verifies; walks take 40 to 150
 _SHARE, _LEAST_SHARE = 0.25, 10.0  # of the time that is left, and [s], that one such solve may take
-_MAX_HALVINGS = 3  # between a change that is too small and one that is enough
+_MAX_HALVINGS = 4  # between a change that is too small and one that is enough
 # Ends of a solve that was still on its way.
 _ON_ITS_WAY = ("iteration_limit", "acceptable")
 _LEAST_TIME = 1.0  # [s] without which no solve is begun
@@ -130,6 +130,8 @@ class _Search:
                 gait, _ = self._walk(self._study, (unfinished,))
                 if gait is not None:
                     return self._told(Explanation(WALKS, gait=gait))
+                if self._ended is not None:
+                    return self._told(Explanation(UNKNOWN))
             self._say("making all laws elastic")
             program = GaitProgram(self._study.formulation())
             start = program.values(guess_from_reference(program))

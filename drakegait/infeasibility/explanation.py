@@ -76,7 +76,8 @@ class Explanation:
         found: list[str] = []
         if self.verdict == WALKS:
             found.append(
-                "Feasible after all: from another start a walk was found that meets every law."
+                "Feasible after all: with more iterations or from another start a walk was found "
+                "that meets every law."
             )
         elif self.verdict == UNDECIDED:
             why = f" ({self.tried[-1]})" if self.tried else ""

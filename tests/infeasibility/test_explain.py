@@ -142,6 +142,15 @@ def test_out_of_time_it_says_that_nothing_is_known():
     assert str(found) == "The time for the explanation ran out; nothing is known yet."
 
 
+def test_ctrl_c_while_the_solve_is_continued_ends_at_once(monkeypatch):
+    asked = unsolved(TINY, "iteration_limit")
+    ended = unsolved(TINY, "interrupted")
+    monkeypatch.setattr(explain_module, "solve", lambda study, **more: ended)
+    monkeypatch.setattr(explain_module, "Relaxation", None)  # nothing else may be begun
+    found = explain(asked)
+    assert (found.verdict, found.ended) == ("unknown", "interrupted")
+
+
 def test_what_needs_no_explanation_or_cannot_have_one_is_refused():
     with pytest.raises(InvalidInput, match="gait to explain is 'converged'"):
         explain(unsolved(TINY, "converged"))
