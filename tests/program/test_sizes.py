@@ -37,12 +37,12 @@ class Sizes:
 
 
 KNOWN = {
-    ("spatial", 18): Sizes(76, 2399, 6799, 402125, 146921, 761),
-    ("spatial", 35): Sizes(152, 4795, 13595, 989073, 364059, 1509),
-    ("spatial-symmetric", 19): Sizes(40, 1263, 3573, 209499, 71319, 403),
-    ("planar", 18): Sizes(76, 1349, 3857, 137314, 44937, 435),
-    ("planar-symmetric", 19): Sizes(40, 710, 2028, 71306, 21608, 230),
-    ("planar-symmetric", 35): Sizes(76, 1347, 3855, 166248, 53188, 430),
+    ("spatial", 18): Sizes(76, 2399, 6799, 402125, 128981, 761),
+    ("spatial", 35): Sizes(152, 4795, 13595, 989073, 319650, 1509),
+    ("spatial-symmetric", 19): Sizes(40, 1263, 3573, 209499, 62392, 403),
+    ("planar", 18): Sizes(76, 1349, 3857, 137314, 40028, 435),
+    ("planar-symmetric", 19): Sizes(40, 710, 2028, 71306, 19124, 230),
+    ("planar-symmetric", 35): Sizes(76, 1347, 3855, 166248, 47042, 430),
 }
 """The studies whose times are measured (benchmarks/walks.py), with nothing else said."""
 
