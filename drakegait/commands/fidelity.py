@@ -8,16 +8,15 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from drakegait.commands.paper import INTERRUPTED, SOLVES
+from drakegait.commands.paper import INTERRUPTED
 from drakegait.commands.screen import console
-from drakegait.commands.stages import Stages
+from drakegait.commands.stages import run_in_stages
 from drakegait.errors import BadFile
 from drakegait.fidelity import document
 from drakegait.fidelity.contents import SECTIONS
 from drakegait.fidelity.published import Place
 from drakegait.paper.document import update
 from drakegait.paper.results import Results
-from drakegait.paper.run import run
 from drakegait.sweep.store import write_bytes
 
 PAGE, NUMBERS = "fidelity.html", "fidelity_results.json"
@@ -32,18 +31,9 @@ def fidelity(
     if docs is not None and not (Path(docs) / DOCUMENT).is_file():
         raise BadFile(Path(docs) / DOCUMENT, "is not there; --docs is the folder that has it.")
     folder, screen = Path(out).expanduser(), console()
-    stages = Stages(screen)
-    try:
-        results = run(
-            SECTIONS, folder / SOLVES, workers=workers, scheduler=scheduler,
-            retry_failed=retry_failed, report=stages.report, stage=stages.begin,
-        )  # fmt: skip
-    except KeyboardInterrupt:
-        text = f"Interrupted: finished studies are kept in {folder}. The same command goes on."
-        screen.print(text, markup=False, soft_wrap=True)
+    results = run_in_stages(screen, SECTIONS, folder, workers, scheduler, retry_failed)
+    if results is None:
         return INTERRUPTED
-    finally:
-        stages.end()
     results.save(folder / NUMBERS, document.FORMAT)
     write_bytes(folder / PAGE, document.page(SECTIONS, results).encode())
     _print(screen, results)

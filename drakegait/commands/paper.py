@@ -10,18 +10,18 @@ from rich.table import Table
 from rich.text import Text
 
 from drakegait.commands.screen import console
-from drakegait.commands.stages import Stages
+from drakegait.commands.stages import run_in_stages
 from drakegait.errors import BadFile, InvalidInput
 from drakegait.paper import document, page
 from drakegait.paper.chapter import Chapter
 from drakegait.paper.contents import CHAPTERS
 from drakegait.paper.results import Results
-from drakegait.paper.run import chapter_named, run
+from drakegait.paper.run import chapter_named
 from drakegait.paper.verdict import Verdict
 from drakegait.sweep.store import write_bytes
 
 INTERRUPTED = 130
-PAGE, NUMBERS, SOLVES = "paper.html", "paper_results.json", "solves"
+PAGE, NUMBERS = "paper.html", "paper_results.json"
 _COLOURS = {Verdict.YES: "green", Verdict.NO: "red"}
 
 
@@ -38,18 +38,9 @@ def paper(
     if docs is not None:
         _check_docs(Path(docs), only)
     folder, screen = Path(out).expanduser(), console()
-    stages = Stages(screen)
-    try:
-        results = run(
-            chapters, folder / SOLVES, workers=workers, scheduler=scheduler,
-            retry_failed=retry_failed, report=stages.report, stage=stages.begin,
-        )  # fmt: skip
-    except KeyboardInterrupt:
-        text = f"Interrupted: finished studies are kept in {folder}. The same command goes on."
-        screen.print(text, markup=False, soft_wrap=True)
+    results = run_in_stages(screen, chapters, folder, workers, scheduler, retry_failed)
+    if results is None:
         return INTERRUPTED
-    finally:
-        stages.end()
     results.save(folder / NUMBERS)
     write_bytes(folder / PAGE, page.render(chapters, results).encode())
     _print(screen, chapters, results)

@@ -1,11 +1,20 @@
-"""What is shown while several sweeps run after one another."""
+"""Several sweeps after one another: run, and shown while they run."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
 
 from rich.console import Console
 
 from drakegait.commands.sweep import SweepDisplay
+from drakegait.paper.chapter import Chapter
+from drakegait.paper.results import Results
+from drakegait.paper.run import run
 from drakegait.sweep.progress import SweepProgress
+
+SOLVES = "solves"
+"""Folder of the sweeps in that of the answer."""
 
 
 class Stages:
@@ -32,3 +41,22 @@ class Stages:
         if self._display is not None:
             self._display.__exit__(None, None, None)
             self._display = None
+
+
+def run_in_stages(
+    screen: Console, chapters: Sequence[Chapter], folder: Path, workers: int | None,
+    scheduler: str | None, retry_failed: bool,
+) -> Results | None:  # fmt: skip
+    """Run the chapters with progress on the screen; None after Ctrl-C, which is told."""
+    stages = Stages(screen)
+    try:
+        return run(
+            chapters, folder / SOLVES, workers=workers, scheduler=scheduler,
+            retry_failed=retry_failed, report=stages.report, stage=stages.begin,
+        )  # fmt: skip
+    except KeyboardInterrupt:
+        text = f"Interrupted: finished studies are kept in {folder}. The same command goes on."
+        screen.print(text, markup=False, soft_wrap=True)
+        return None
+    finally:
+        stages.end()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from drakegait.cli import main
-from drakegait.commands import fidelity as command
+from drakegait.commands import stages
 from drakegait.fidelity import document
 from drakegait.fidelity.contents import SECTIONS
 from drakegait.paper.results import Results
@@ -31,7 +31,7 @@ def test_a_folder_without_the_page_is_refused(tmp_path, capsys):
 
 def test_page_numbers_and_document_are_written(tmp_path, capsys, monkeypatch):
     recorded = Results.load(DOCS / "fidelity_results.json", document.FORMAT)
-    monkeypatch.setattr(command, "run", lambda *_, **__: recorded)  # the solves alone
+    monkeypatch.setattr(stages, "run", lambda *_, **__: recorded)  # the solves alone
     docs = tmp_path / "docs"
     docs.mkdir()
     (docs / "fidelity.md").write_text(f"before\n{document.BEGIN}\n{document.END}\nafter\n")
