@@ -4,7 +4,8 @@ A law is given up by making it cheap to break while all others stay dear. If the
 broken, every conflict needs that law. Those laws together are tested with all others given
 up: if they still break, they are the only conflict and the smallest. If not, or if no law is in
 every conflict, the deletion filter (Chinneck 2008, section 6.2) ends with one from which
-no law can be left out. All solves find local optima; so does what follows from them.
+no law can be left out. All solves find local optima; so does what follows from them. The laws of
+mechanics are kept throughout: a conflict is one with them, and smallest beside them.
 """
 
 from __future__ import annotations
@@ -15,12 +16,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.errors import InvalidInput
-from drakegait.infeasibility.elastic import ElasticHessian, ElasticProgram
-from drakegait.infeasibility.laws import laws_of
+from drakegait.infeasibility.laws import MECHANICS, laws_of
+from drakegait.program.elastic import ElasticHessian, ElasticProgram
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_values
+from drakegait.solvers.condensed.solve_elastic import solve_elastic
+from drakegait.solvers.condensed.supported import why_not
 from drakegait.solvers.monitor import Monitor
 from drakegait.solvers.options import SolverOptions
+from drakegait.solvers.solution import Solution
 from drakegait.study import GaitStudy
 from drakegait.transcription.design_vector import DesignValues
 
@@ -81,8 +85,6 @@ class Relaxation:
                 np.argmax([law.variables for law in self.laws], axis=0)[variables],
             ]
         )
-        lifted = self.program.formulation.lifted
-        self._curvature = ElasticHessian(self.elastic) if lifted else None
         self._known: dict[frozenset[str], Relaxed] = {}
         self._first = self.elastic.start(guess_from_values(self.program, values))
 
@@ -118,14 +120,8 @@ class Relaxation:
         elastic, monitor = self.elastic, self._monitor
         elastic.prices = (full * factor)[self.law_of_row]
         monitor.begin(elastic)
-        solution = _solver()(
-            elastic,
-            self._first if start is None else start.point,
-            SolverOptions(max_iterations=_MAX_ITERATIONS),
-            monitor,
-            warm=start is not None,
-            curvature=self._curvature,
-        )
+        solution = _solved(elastic, self._first if start is None else start.point, monitor,
+                           near=start is not None)  # fmt: skip
         missing = elastic.missing(solution.x)
         # Hard rows and the slacks' equations hold as far as the solver got.
         held = elastic.violations(solution.x).max() <= _HARD
@@ -152,18 +148,23 @@ def _largest(amounts: np.ndarray, groups: np.ndarray, count: int) -> np.ndarray:
     return most
 
 
-def _solver() -> Callable:
-    """The solver of elastic programs.
+def _solved(elastic: ElasticProgram, x: np.ndarray, monitor: Monitor, near: bool) -> Solution:
+    """The elastic program minimised; programs outside the default solver's structure by IPOPT.
 
     Raises:
-        InvalidInput: it has no wheel for this machine.
+        InvalidInput: such a program, and IPOPT is not installed.
     """
+    options = SolverOptions(max_iterations=_MAX_ITERATIONS)
+    reason = why_not(elastic.program, options)
+    if not reason:
+        return solve_elastic(elastic, x, options, monitor, near)
     try:
         from drakegait.solvers.ipopt_mumps import solve_with_ipopt_mumps
     except ImportError:
         allowed = "on a machine with the package ipyopt, which relaxes the laws"
-        raise InvalidInput("explaining a conflict", "asked for", allowed) from None
-    return solve_with_ipopt_mumps
+        raise InvalidInput(f"explaining a conflict with {reason}", "asked for", allowed) from None
+    curvature = ElasticHessian(elastic) if elastic.formulation.lifted else None
+    return solve_with_ipopt_mumps(elastic, x, options, monitor, near, curvature)
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +202,7 @@ def find_conflict(
     # giving it up changes nothing.
     suspects = [
         name for name in relaxation.names
-        if name in least.broken or least.pull[name] > _GIVEN_UP
+        if name != MECHANICS and (name in least.broken or least.pull[name] > _GIVEN_UP)
     ]  # fmt: skip
     alone: dict[str, Relaxed] = {}
     for name in suspects:
@@ -214,19 +215,20 @@ def find_conflict(
         return Conflict(enough, least, alone, False, False)
     if enough:
         say("giving up all but " + ", ".join(enough))
-        others = relaxation.give_up(set(relaxation.names) - set(enough), least)
+        others = relaxation.give_up(set(relaxation.names) - {*enough, MECHANICS}, least)
         if stopped():
             return Conflict(enough, least, alone, False, False)
         if others.broken:
             return Conflict(enough, least, alone, others.converged, True)
-    given_up = set(relaxation.names) - set(suspects)
+    given_up = set(relaxation.names) - {*suspects, MECHANICS}
     for name in [name for name in reversed(suspects) if name not in enough]:
         if stopped():
             return Conflict(enough, least, alone, False, False)
         say("giving up " + ", ".join([name, *sorted(given_up)]))
         if relaxation.give_up({*given_up, name}, least).broken:
             given_up.add(name)
-    laws = tuple(name for name in relaxation.names if name not in given_up)
+    kept = [name for name in relaxation.names if name not in given_up]
+    laws = tuple(name for name in kept if name != MECHANICS or kept == [MECHANICS])
     return Conflict(laws, least, alone, not stopped(), False)
 
 

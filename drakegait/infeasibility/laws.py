@@ -1,7 +1,10 @@
 """What may be in conflict: the rows and bounds of a program in groups that a walker would name.
 
 Muscles are given up by letting a moment without a source act at the joints ("reserve"), which is
-more than any excitation could do; excitations themselves therefore stay within their bounds.
+more than any excitation could do; excitations themselves therefore stay within their bounds. So do
+the rows that define the contact forces by least squares (eq. 17): a reserve fills what is left.
+The laws of mechanics are a group that is never given up. Without them anything moves, and no
+change of a study would do what giving them up does.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ from drakegait.program.gait_program import GaitProgram
 from drakegait.program.timing import TimingRows
 
 MUSCLES, SPEED, FRICTION, ASYMMETRY = "muscles", "speed", "friction", "asymmetry"
-BALANCE, FEET, CLEARANCE, PUSH = "balance", "feet", "clearance", "push"
+MECHANICS = "mechanics"
 STEPS, PHASES, RANGE = "steps", "phase durations", "range of "
 SIDES = {"_r": "right", "_l": "left"}
 # Of a row of friction a tenth of the squared body weight is much, and 2e-4 of its own size (1.4 %
@@ -89,12 +92,11 @@ def _mask(which: object, size: int) -> np.ndarray:
 
 
 _ROWS = {
-    "least-squares contact forces": BALANCE,
-    "foot contact": FEET,
-    "clearance": CLEARANCE,
+    "foot contact": MECHANICS,
+    "clearance": MECHANICS,
     "friction": FRICTION,
     "free moment": FRICTION,
-    "normal force": PUSH,
+    "normal force": MECHANICS,
     "toe torque": "toe torque",
     "average speed": SPEED,
     "phase duration": PHASES,
@@ -104,10 +106,10 @@ _ROWS = {
 
 
 def _law_of_row(name: str) -> str:
-    """The group of a row; empty for the excitations, which always hold."""
+    """The group of a row; empty for excitations and least-squares forces, which always hold."""
     law, _, what = name.split(" | ")
     if law == "equations of motion":
-        return BALANCE if what.startswith("hat_") else MUSCLES
+        return MECHANICS if what.startswith("hat_") else MUSCLES
     if law == "joint limit":
         return RANGE + without_side(what)
     return _ROWS.get(law, "")
@@ -116,7 +118,7 @@ def _law_of_row(name: str) -> str:
 def _law_of_variable(program: GaitProgram, number: int, name: str) -> str:
     """The group of the bounds of an unknown; empty where they always hold."""
     if name.startswith("contact force") and np.isfinite(program.design.lower[number]):
-        return "toe torque" if np.isfinite(program.design.upper[number]) else PUSH
+        return "toe torque" if np.isfinite(program.design.upper[number]) else MECHANICS
     return STEPS if name.startswith("step ") or name == "stride time" else ""
 
 
@@ -134,10 +136,6 @@ def _words(program: GaitProgram) -> dict[str, tuple[str, bool]]:
         **ranges,
         ASYMMETRY: (ratios, True),
         "toe torque": ("the torque that the toes can bear", True),
-        BALANCE: ("the balance of forces on the whole body", False),
-        FEET: ("feet that stand still on their prints", False),
-        CLEARANCE: ("feet that do not enter the ground", False),
-        PUSH: ("a ground that can only push", False),
         STEPS: (
             f"steps of {STEP_LENGTHS[0]:g} to {STEP_LENGTHS[1]:g} m, no wider than "
             f"{STEP_WIDTHS[1]:g} m, in strides of {STRIDE_TIMES[0]:g} to {STRIDE_TIMES[1]:g} s",
@@ -145,6 +143,9 @@ def _words(program: GaitProgram) -> dict[str, tuple[str, bool]]:
         ),
         PHASES: (f"contact phases of {shortest:.2g} to {longest:.2g} s", False),
         "periodic ends": ("ends of the curves that agree as in eq. (14)", False),
+        MECHANICS: (
+            "feet that stand still on the ground, which can only push, and forces in balance", False
+        ),
     }
 
 

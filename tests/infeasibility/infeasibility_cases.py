@@ -13,7 +13,6 @@ from drakegait.study import GaitStudy
 
 # A walk as small as a walk can be.
 TINY = GaitStudy.planar_symmetric(11, interior_points=(3, 2, 6, 5))
-GROUPS = tuple(dict.fromkeys(TINY.walker.muscles.abbreviations))
 
 
 def limited(study: GaitStudy, joint: str, low: float, high: float) -> GaitStudy:
@@ -26,7 +25,7 @@ def limited(study: GaitStudy, joint: str, low: float, high: float) -> GaitStudy:
 
 def weak(study: GaitStudy, factor: float) -> GaitStudy:
     """All muscles of so much strength."""
-    return study.replace(strength=dict.fromkeys(GROUPS, factor))
+    return study.replace(strength=dict.fromkeys(study.walker.muscles.abbreviations, factor))
 
 
 @functools.cache

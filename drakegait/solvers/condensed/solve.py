@@ -27,7 +27,8 @@ FIRST_BARRIER, WARM_BARRIER = 1e-3, 1e-4
 # Of a start from its bounds, relative. A first start stands far off: its forces say little about
 # which muscles will be silent, and what stands at a bound is slow to leave it.
 _PUSH, _WARM_PUSH = 0.2, 1e-2
-_LAST_BARRIER = 0.09  # of the tolerance on complementarity
+COMPLEMENTARITY = 0.01  # of the tolerance on optimality
+LAST_BARRIER = 0.09  # of the tolerance on complementarity
 
 
 def solve_condensed(
@@ -48,21 +49,36 @@ def solve_condensed(
     if reason:
         return _by_ipopt(program, x, options, monitor, warm, f"{reason}: by ipopt-mumps")
     system = CondensedSystem(program, LagrangianHessian(program))
-    complementarity = 0.01 * options.optimality
     first = options.barrier_start or (WARM_BARRIER if warm else FIRST_BARRIER)
     method = InteriorPoint(
         program,
         system,
         x,
         barrier=first,
-        last_barrier=_LAST_BARRIER * complementarity,
+        last_barrier=LAST_BARRIER * (COMPLEMENTARITY * options.optimality),
         push=_WARM_PUSH if warm else _PUSH,
         known=known,
     )
+    iterations, status, detail = iterate(method, options, monitor)
+    program.smoothing = 1.0
+    if not status:
+        return _by_ipopt(program, method.x, options, monitor, True, f"{detail}: on by ipopt-mumps")
+    return solution_of(method, monitor, iterations, status, detail)
+
+
+def iterate(
+    method: InteriorPoint, options: SolverOptions, monitor: Monitor
+) -> tuple[int, str, str]:
+    """Step until it has converged or is stopped.
+
+    Returns:
+        Iterations, status, and how it ended; the status is empty where no step is acceptable.
+    """
+    complementarity = COMPLEMENTARITY * options.optimality
     monitor.step(method.x, 0)
     settled = Settled(options)
-    iterations, status, detail = 0, "", ""
-    while not status:
+    iterations = 0
+    while True:
         errors = method.errors(0.0)
         if (
             method.smoothing == 1.0
@@ -70,29 +86,31 @@ def solve_condensed(
             and errors.primal <= options.feasibility
             and errors.complementarity <= complementarity
         ):
-            status, detail = "converged", f"KKT errors {errors.dual:.1e}, {errors.primal:.1e}"
-        elif settled.reached and method.at_last_barrier:
-            status, detail = "converged", settled.sentence
-        elif monitor.stop_reason is not None:
-            status = monitor.stop_reason
-        elif iterations >= options.max_iterations:
-            status = "iteration_limit"
-        else:
-            if settled.reached:
-                method.lower_barrier(settled.FACTOR)
-            elif method.little_left:
-                method.lower_barrier()
-            while method.solved_barrier_problem() and not method.at_last_barrier:
-                method.lower_barrier()
-            if not method.step():
-                detail = "no acceptable step"
-                break
-            iterations += 1
-            monitor.step(method.x, iterations)
-            settled.after(method.cost, method.violation, method.barrier)
-    program.smoothing = 1.0
-    if not status:
-        return _by_ipopt(program, method.x, options, monitor, True, f"{detail}: on by ipopt-mumps")
+            detail = f"KKT errors {errors.dual:.1e}, {errors.primal:.1e}"
+            return iterations, "converged", detail
+        if settled.reached and method.at_last_barrier:
+            return iterations, "converged", settled.sentence
+        if monitor.stop_reason is not None:
+            return iterations, monitor.stop_reason, ""
+        if iterations >= options.max_iterations:
+            return iterations, "iteration_limit", ""
+        if settled.reached:
+            method.lower_barrier(settled.FACTOR)
+        elif method.little_left:
+            method.lower_barrier()
+        while method.solved_barrier_problem() and not method.at_last_barrier:
+            method.lower_barrier()
+        if not method.step():
+            return iterations, "", "no acceptable step"
+        iterations += 1
+        monitor.step(method.x, iterations)
+        settled.after(method.cost, method.violation, method.barrier)
+
+
+def solution_of(
+    method: InteriorPoint, monitor: Monitor, iterations: int, status: str, detail: str
+) -> Solution:
+    """What `iterate` found, or the best of what it saw."""
     end = method.x if status == "converged" or monitor.best is None else monitor.best
     lower, upper = method.bound_multipliers
     return Solution(

@@ -7,7 +7,8 @@ W is the Hessian of the Lagrangian plus the barrier's diagonal, S the stiffness 
 rows. Contact forces and residuals are eliminated at their control points
 (`LocalElimination`), which leaves spline coefficients, timing and placement: a few hundred
 unknowns with a matrix K that is positive definite where the step is one of descent.
-Rows of no control point that are equalities (average speed) keep their multipliers.
+Rows of no control point that are equalities (average speed) keep their multipliers (`Border`).
+Equations of motion that may break have reserves, eliminated there, too (`Reserves`).
 """
 
 from __future__ import annotations
@@ -24,10 +25,12 @@ from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
 from drakegait.program.local_rows import DenseRows
 from drakegait.solvers.condensed.assembly import Assembly, add_square, own_blocks
+from drakegait.solvers.condensed.border import Border
 from drakegait.solvers.condensed.convexity import convex_excess
 from drakegait.solvers.condensed.linearisation import Linearisation
 from drakegait.solvers.condensed.local_elimination import LocalElimination
 from drakegait.solvers.condensed.local_variables import LocalVariables, hessian_times
+from drakegait.solvers.condensed.reserves import Reserves
 from drakegait.solvers.condensed.sparse_structure import SparseStructure
 from drakegait.walker import feet
 
@@ -36,10 +39,14 @@ _REFINEMENTS, _LAST_CORRECTION = 3, 1e-7  # at most; of the solution: the next i
 
 
 class CondensedSystem:
-    """Factors and solves the systems of one program."""
+    """Factors and solves the systems of one program.
 
-    def __init__(self, program: GaitProgram, hessian: LagrangianHessian):
-        self._program, self._hessian = program, hessian
+    Args:
+        share: of the program's cost in what is minimised.
+    """
+
+    def __init__(self, program: GaitProgram, hessian: LagrangianHessian, share: float = 1.0):
+        self._program, self._hessian, self._share = program, hessian, share
         self.num_shared = program.design.offsets["multipliers"]
         self._arms = program.formulation.walker.muscles.moment_arms
         self._assembly = Assembly(program, self.num_shared)
@@ -91,15 +98,18 @@ class CondensedSystem:
         stiffness: np.ndarray,
         diagonal: np.ndarray,
         jacobian: scipy.sparse.csr_array,
+        compliance: np.ndarray | None = None,
     ) -> None:
         """Evaluate second derivatives at `x` and build K.
 
         Args:
             multipliers: of all rows (num_constraints,).
             stiffness, diagonal, jacobian: see `Linearisation`.
+            compliance: D of all rows, how far equations of motion and equality rows of no
+                control point give way for their multipliers (num_constraints,); default not.
         """
         state = self._program.state(x)
-        curvature = self._hessian.local_curvature(state, multipliers, 1.0, stiffness)
+        curvature = self._hessian.local_curvature(state, multipliers, self._share, stiffness)
         elimination = LocalElimination.at(state, curvature)
         timing = self._program.timing
         bends = timing.curvature(multipliers[self._program.first_timing_row :])
@@ -122,6 +132,9 @@ class CondensedSystem:
         half = np.swapaxes(by_shared, 1, 2) @ (mixed + 0.5 * local @ by_shared)
         dense += half
         dense += np.swapaxes(half, 1, 2)
+        self.give = self._give_way(elimination, local, mixed, compliance)
+        if self.reserves is not None:
+            dense -= self.reserves.reduction
         matrix = self._assembly.matrix(dense, blocks)
         matrix[np.arange(size), np.arange(size)] += diagonal[:size]
         # An event may end one phase and begin another.
@@ -132,12 +145,27 @@ class CondensedSystem:
         rows = rows[:, few]
         square = rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
         matrix[np.ix_(few, few)] += square
-        self._border = jacobian[self._shared_equalities][:, :size].toarray()
+        few = self._shared_equalities
+        self._border = Border(jacobian[few][:, :size].toarray(), self.give[few])
         self.matrix = matrix
         self._curvature, self._convexifying = curvature, None
         self.at = Linearisation(
             jacobian, blocks, bends, stiffness, diagonal, elimination, local, mixed
         )
+
+    def _give_way(
+        self, elimination: LocalElimination, local: np.ndarray, mixed: np.ndarray,
+        compliance: np.ndarray | None,
+    ) -> np.ndarray:  # fmt: skip
+        """D as it is used; makes the reserves of the equations of motion."""
+        self.reserves = None
+        if compliance is None:
+            return np.zeros(len(self.equality))
+        physical = compliance[self._balance] * self._balance_scale**2
+        self.reserves = Reserves(elimination, local, mixed, physical)
+        used = compliance.copy()
+        used[self._balance] *= self.reserves.share[:, None]
+        return used
 
     def _local_hessian(self, blocks: HessianBlocks, diagonal: np.ndarray) -> np.ndarray:
         """Second derivatives by local unknowns (num, 14 + n, 14 + n), physical units."""
@@ -188,12 +216,7 @@ class CondensedSystem:
         matrix = self.matrix.copy() if self._added is None else self.matrix + self._added
         size = len(matrix)
         matrix[np.arange(size), np.arange(size)] += shift
-        if len(self._border):
-            # On the border's null space nothing changes; elsewhere K need not be definite.
-            self._weight = np.abs(np.diag(self.matrix)).mean()
-            few = np.flatnonzero(self._border.any(axis=0))  # timing and placement
-            border = self._border[:, few]
-            matrix[np.ix_(few, few)] += self._weight * border.T @ border
+        self._border.weigh(matrix, np.abs(np.diag(self.matrix)).mean())
         try:
             self._factor = scipy.linalg.cho_factor(
                 matrix, lower=True, overwrite_a=True, check_finite=False
@@ -203,9 +226,7 @@ class CondensedSystem:
         if not np.isfinite(self._factor[0][-1, -1]):
             return False
         self.shift = shift
-        if len(self._border):
-            self._by_border = scipy.linalg.cho_solve(self._factor, self._border.T)
-            self._schur = self._border @ self._by_border
+        self._border.factored(self._factor)
         return True
 
     # Solve -------------------------------------------------------------------------------
@@ -245,29 +266,26 @@ class CondensedSystem:
         self, x: np.ndarray, y: np.ndarray, b: np.ndarray, c: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         rest_b = b - self._times(x) - self.at.jacobian.T @ y
-        return rest_b, np.where(self.equality, c + self.at.jacobian @ x, 0.0)
+        return rest_b, np.where(self.equality, c + self.at.jacobian @ x - self.give * y, 0.0)
 
     def _once(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         at, size, variables = self.at, self.num_shared, self._variables
         by_shared, rows = at.elimination.by_shared, at.blocks.rows[:, :3]
         local = self._follow(c)  # at fixed shared unknowns
         wanted = variables.local(b)
+        if self.reserves is not None:
+            local = local + self.reserves.follow(wanted - (at.local @ local[..., None])[..., 0])
         rest = (wanted - (at.local @ local[..., None])[..., 0])[:, None]
         shares = (rest @ by_shared - local[:, None] @ at.mixed)[:, 0]
         reduced = b[:size] + variables.by_shared(shares, rows)[:size]
-        border = self._shared_equalities
+        few = self._shared_equalities
         y = np.zeros(len(c))
-        if len(border):
-            reduced = reduced - self._weight * self._border.T @ c[border]
-            shared = scipy.linalg.cho_solve(self._factor, reduced, check_finite=False)
-            y[border] = np.linalg.solve(self._schur, self._border @ shared + c[border])
-            shared -= self._by_border @ y[border]
-        else:
-            shared = scipy.linalg.cho_solve(self._factor, reduced, check_finite=False)
+        shared, y[few] = self._border.solve(reduced, c[few])
         x = np.zeros(len(b))
         x[:size] = shared
         along = variables.shared(x, rows)[..., None]
-        local = local + (by_shared @ along)[..., 0]
+        followed = by_shared if self.reserves is None else self.reserves.by_shared
+        local = local + (followed @ along)[..., 0]
         variables.into(x, local)
         y += self._weigh(wanted - (at.local @ local[..., None] + at.mixed @ along)[..., 0])
         return x, y

@@ -34,8 +34,9 @@ class Bounds:
 class ElasticProgram:
     """What a solver needs of a program, with the soft laws of `program` elastic.
 
-    The unknowns are x, then p and then n of each soft row and of each soft variable; the rows are
-    those of `program`, then one for each soft variable. `prices` may change between solves.
+    The unknowns are x, then p of each soft row or variable that has a lower bound, then n of each
+    that has an upper one; the rows are those of `program`, then one for each soft variable.
+    `prices` may change between solves.
 
     Args:
         program: the program whose laws are to break.
@@ -44,48 +45,60 @@ class ElasticProgram:
 
     Attributes:
         ends: the soft rows, in the numbering of this program (num_soft,).
-        prices: of one unit of each of them (num_soft,).
+        freed: the soft variables; their rows come last.
+        short, over: positions in `ends` of what has p and of what has n.
+        prices: of one unit of each soft row (num_soft,).
     """
 
     def __init__(self, program: GaitProgram, soft_rows: np.ndarray, soft_variables: np.ndarray):
         self.program, self.formulation = program, program.formulation
-        self._freed = np.flatnonzero(soft_variables)
+        self.freed = np.flatnonzero(soft_variables)
         self._size, count = program.num_variables, program.num_constraints
-        added = count + np.arange(len(self._freed))
+        added = count + np.arange(len(self.freed))
         self.ends = np.concatenate([np.flatnonzero(soft_rows), added])
-        num = len(self.ends)
-        self.prices = np.ones(num)
-        self.num_variables, self.num_constraints = self._size + 2 * num, count + len(self._freed)
+        self.prices = np.ones(len(self.ends))
         lower, upper = program.design.lower.copy(), program.design.upper.copy()
-        self.lower = np.concatenate([program.lower, lower[self._freed]])
-        self.upper = np.concatenate([program.upper, upper[self._freed]])
-        lower[self._freed], upper[self._freed] = -np.inf, np.inf
+        self.lower = np.concatenate([program.lower, lower[self.freed]])
+        self.upper = np.concatenate([program.upper, upper[self.freed]])
+        lower[self.freed], upper[self.freed] = -np.inf, np.inf
         # What has no bound on one side cannot be off there.
-        ends = np.concatenate([self.lower[self.ends], self.upper[self.ends]])
-        most = np.where(np.isfinite(ends), np.inf, 0.0)
+        self.short = np.flatnonzero(np.isfinite(self.lower[self.ends]))
+        self.over = np.flatnonzero(np.isfinite(self.upper[self.ends]))
+        num = len(self.short) + len(self.over)
+        self.num_variables, self.num_constraints = self._size + num, count + len(self.freed)
         self.design = Bounds(
-            np.concatenate([lower, np.zeros(2 * num)]), np.concatenate([upper, most])
+            np.concatenate([lower, np.zeros(num)]), np.concatenate([upper, np.full(num, np.inf)])
         )
-        slack = self._size + np.arange(num)
-        self.jacobian_rows = np.concatenate([program.jacobian_rows, added, self.ends, self.ends])
+        off = np.concatenate([self.ends[self.short], self.ends[self.over]])
+        self.jacobian_rows = np.concatenate([program.jacobian_rows, added, off])
         self.jacobian_columns = np.concatenate(
-            [program.jacobian_columns, self._freed, slack, slack + num]
+            [program.jacobian_columns, self.freed, self._size + np.arange(num)]
         )
-        self._constant = np.concatenate([np.ones(len(self._freed) + num), -np.ones(num)])
+        self._constant = np.ones(len(self.freed) + num)
+        self._constant[len(self.freed) + len(self.short) :] = -1.0
         self.row_names = [
             *program.row_names,
-            *(f"bound | stride | {program.design.names[i]}" for i in self._freed),
+            *(f"bound | stride | {program.design.names[i]}" for i in self.freed),
         ]
-        scale, units = program.design.scale[self._freed], ["" for _ in self._freed]
-        self.row_scale = np.concatenate([program.row_scale, scale])
-        self.row_units = [*program.row_units, *units]
+        self.row_scale = np.concatenate([program.row_scale, program.design.scale[self.freed]])
+        self.row_units = [*program.row_units, *("" for _ in self.freed)]
+
+    @property
+    def smoothing(self) -> float:
+        """Width of rounded corners, see `GaitProgram`."""
+        return self.program.smoothing
+
+    @smoothing.setter
+    def smoothing(self, width: float) -> None:
+        self.program.smoothing = width
 
     def start(self, x: np.ndarray) -> np.ndarray:
         """Extended unknowns at `x`, with p and n that make the soft rows hold."""
         rows = self._inner_rows(x)[self.ends]
-        short = np.maximum(self.lower[self.ends] - rows, 0.0)
-        over = np.maximum(rows - self.upper[self.ends], 0.0)
-        return np.concatenate([x, short, over])
+        low, high = self.lower[self.ends] - rows, rows - self.upper[self.ends]
+        return np.concatenate(
+            [x, np.maximum(low[self.short], 0.0), np.maximum(high[self.over], 0.0)]
+        )
 
     def unknowns(self, extended: np.ndarray) -> np.ndarray:
         """x of the extended unknowns."""
@@ -93,18 +106,29 @@ class ElasticProgram:
 
     def missing(self, extended: np.ndarray) -> np.ndarray:
         """p - n of each soft row, in its unit: above zero where it is too low (num_soft,)."""
-        short, over = extended[self._size :].reshape(2, -1)
-        return short - over
+        return self.spread(extended[self._size :])
+
+    def spread(self, off: np.ndarray) -> np.ndarray:
+        """The first of `off`, by `short`, less the others, by `over`, at soft rows (num_soft,)."""
+        found = np.zeros(len(self.ends))
+        found[self.short] = off[: len(self.short)]
+        found[self.over] -= off[len(self.short) :]
+        return found
+
+    @property
+    def _slope(self) -> np.ndarray:
+        """Prices of p, then of n."""
+        return np.concatenate([self.prices[self.short], self.prices[self.over]])
 
     def cost(self, extended: np.ndarray) -> float:
         """Price of what is missing and the share of f."""
-        x, off = extended[: self._size], extended[self._size :].reshape(2, -1)
-        return float(self.prices @ off.sum(axis=0) + SHARE * self.program.cost(x))
+        x, off = extended[: self._size], extended[self._size :]
+        return float(self._slope @ off + SHARE * self.program.cost(x))
 
     def gradient(self, extended: np.ndarray) -> np.ndarray:
         """Its derivatives (num_variables,)."""
         slope = SHARE * self.program.gradient(extended[: self._size])
-        return np.concatenate([slope, self.prices, self.prices])
+        return np.concatenate([slope, self._slope])
 
     def rows(self, extended: np.ndarray) -> np.ndarray:
         """All rows, p and n included (num_constraints,)."""
@@ -113,7 +137,7 @@ class ElasticProgram:
         return rows
 
     def _inner_rows(self, x: np.ndarray) -> np.ndarray:
-        return np.concatenate([self.program.rows(x), x[self._freed]])
+        return np.concatenate([self.program.rows(x), x[self.freed]])
 
     def jacobian(self, extended: np.ndarray) -> np.ndarray:
         """Entries at `jacobian_rows`, `jacobian_columns`."""
