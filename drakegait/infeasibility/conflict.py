@@ -16,21 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.errors import InvalidInput
-from drakegait.infeasibility.laws import MECHANICS, laws_of
+from drakegait.infeasibility.laws import MECHANICS, cheap_prices, laws_of
 from drakegait.program.elastic import ElasticHessian, ElasticProgram
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_values
-from drakegait.solvers.condensed.solve_elastic import solve_elastic
+from drakegait.solvers.condensed.solve_elastic import ELASTIC_OPTIONS, solve_elastic
 from drakegait.solvers.condensed.supported import why_not
 from drakegait.solvers.monitor import Monitor
-from drakegait.solvers.options import SolverOptions
 from drakegait.solvers.solution import Solution
 from drakegait.study import GaitStudy
 from drakegait.transcription.design_vector import DesignValues
 
-_GIVEN_UP = 2e-3  # price of a law that is given up, relative
-_HARD = 0.02  # of a tolerance or typical size: what rows may be off that are not soft
-_MAX_ITERATIONS = 250
 _MAX_RECENTRINGS = 3
 _AT_BOUND = 0.98  # of the reach of an event
 
@@ -45,7 +41,7 @@ class Relaxed:
         missing: of each soft row, in its unit, see `ElasticProgram.missing` (num_soft,).
         broken: names of the dear laws that do not hold.
         converged: whether the solver ended at an optimum.
-        pull: largest multiplier of each law, relative to its price.
+        pull: largest multiplier of each law, relative to its price when given up.
     """
 
     given_up: frozenset[str]
@@ -76,15 +72,11 @@ class Relaxation:
     def _state(self, values: DesignValues) -> None:
         self.program = GaitProgram(self.study.formulation(values.events))
         self.laws = laws_of(self.program)
-        rows = np.any([law.rows for law in self.laws], axis=0)
-        variables = np.any([law.variables for law in self.laws], axis=0)
-        self.elastic = ElasticProgram(self.program, rows, variables)
-        self.law_of_row = np.concatenate(
-            [
-                np.argmax([law.rows for law in self.laws], axis=0)[rows],
-                np.argmax([law.variables for law in self.laws], axis=0)[variables],
-            ]
-        )
+        self.elastic = ElasticProgram.of(self.program)
+        rows = np.argmax([law.rows for law in self.laws], axis=0)
+        bounds = np.argmax([law.variables for law in self.laws], axis=0)[self.elastic.freed]
+        self.law_of_row = np.concatenate([rows, bounds])[self.elastic.ends]
+        self._dear, self._cheap = self.elastic.prices, cheap_prices(self.elastic)
         self._known: dict[frozenset[str], Relaxed] = {}
         self._first = self.elastic.start(guess_from_values(self.program, values))
 
@@ -115,24 +107,19 @@ class Relaxation:
         cheap = frozenset(names)
         if start is not None and cheap in self._known:
             return self._known[cheap]
-        full = np.array([law.price for law in self.laws])
-        factor = np.array([_GIVEN_UP if law.name in cheap else 1.0 for law in self.laws])
         elastic, monitor = self.elastic, self._monitor
-        elastic.prices = (full * factor)[self.law_of_row]
-        monitor.begin(elastic)
+        given_up = np.array([law.name in cheap for law in self.laws])[self.law_of_row]
+        elastic.prices = np.where(given_up, self._cheap, self._dear)
         solution = _solved(elastic, self._first if start is None else start.point, monitor,
                            near=start is not None)  # fmt: skip
         missing = elastic.missing(solution.x)
-        # Hard rows and the slacks' equations hold as far as the solver got.
-        held = elastic.violations(solution.x).max() <= _HARD
-        most = _largest(np.abs(missing), self.law_of_row, len(self.laws))
+        off = self._largest(elastic.off(solution.x))
         broken = tuple(
             law.name
-            for law, size in zip(self.laws, most, strict=True)
-            if law.name not in cheap and (size > law.held or not held)
+            for law, size in zip(self.laws, off, strict=True)
+            if law.name not in cheap and size > 1.0
         )
-        pull = np.abs(solution.row_multipliers[elastic.ends]) / full[self.law_of_row]
-        pulls = _largest(pull, self.law_of_row, len(self.laws))
+        pulls = self._largest(np.abs(solution.row_multipliers[elastic.ends]) / self._cheap)
         found = Relaxed(
             cheap, solution.x, missing, broken, solution.status == "converged",
             dict(zip(self.names, map(float, pulls), strict=True)),
@@ -141,11 +128,11 @@ class Relaxation:
             self._known[cheap] = found
         return found
 
-
-def _largest(amounts: np.ndarray, groups: np.ndarray, count: int) -> np.ndarray:
-    most = np.zeros(count)
-    np.maximum.at(most, groups, amounts)
-    return most
+    def _largest(self, amounts: np.ndarray) -> np.ndarray:
+        """The largest of each law's rows (num_laws,)."""
+        most = np.zeros(len(self.laws))
+        np.maximum.at(most, self.law_of_row, amounts)
+        return most
 
 
 def _solved(elastic: ElasticProgram, x: np.ndarray, monitor: Monitor, near: bool) -> Solution:
@@ -154,17 +141,17 @@ def _solved(elastic: ElasticProgram, x: np.ndarray, monitor: Monitor, near: bool
     Raises:
         InvalidInput: such a program, and IPOPT is not installed.
     """
-    options = SolverOptions(max_iterations=_MAX_ITERATIONS)
-    reason = why_not(elastic.program, options)
+    reason = why_not(elastic.program, ELASTIC_OPTIONS)
     if not reason:
-        return solve_elastic(elastic, x, options, monitor, near)
+        return solve_elastic(elastic, x, monitor, near)
     try:
         from drakegait.solvers.ipopt_mumps import solve_with_ipopt_mumps
     except ImportError:
         allowed = "on a machine with the package ipyopt, which relaxes the laws"
         raise InvalidInput(f"explaining a conflict with {reason}", "asked for", allowed) from None
     curvature = ElasticHessian(elastic) if elastic.formulation.lifted else None
-    return solve_with_ipopt_mumps(elastic, x, options, monitor, near, curvature)
+    monitor.begin(elastic)
+    return solve_with_ipopt_mumps(elastic, x, ELASTIC_OPTIONS, monitor, near, curvature)
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +189,7 @@ def find_conflict(
     # giving it up changes nothing.
     suspects = [
         name for name in relaxation.names
-        if name != MECHANICS and (name in least.broken or least.pull[name] > _GIVEN_UP)
+        if name != MECHANICS and (name in least.broken or least.pull[name] > 1.0)
     ]  # fmt: skip
     alone: dict[str, Relaxed] = {}
     for name in suspects:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.errors import InvalidInput
+from drakegait.program.elastic import ElasticProgram
 from drakegait.program.design import STEP_LENGTHS, STEP_WIDTHS, STRIDE_TIMES
 from drakegait.program.formulation import JointLimit
 from drakegait.program.gait_program import GaitProgram
@@ -24,10 +25,9 @@ MUSCLES, SPEED, FRICTION, ASYMMETRY = "muscles", "speed", "friction", "asymmetry
 MECHANICS = "mechanics"
 STEPS, PHASES, RANGE = "steps", "phase durations", "range of "
 SIDES = {"_r": "right", "_l": "left"}
-# Of a row of friction a tenth of the squared body weight is much, and 2e-4 of its own size (1.4 %
-# of the body weight on a usual ground) little; elsewhere two per cent of a tolerance or typical
-# size.
-_FRICTION_PRICE, _FRICTION_HELD, _HELD = 10.0, 2e-4, 0.02  # the price of a squared body weight
+# Price of one unit of a law that is given up. Friction costs by what slips, not by how slippery the
+# ground is: the price of a squared body weight.
+_CHEAP, _CHEAP_FRICTION = 2e-3, 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +40,6 @@ class Law:
         stated: whether the study states it; else it holds for every walk.
         rows: mask of the program's rows (num_constraints,).
         variables: mask of the unknowns whose bounds belong to it (num_variables,).
-        price: of one unit of a row.
-        held: how far a row may be off and count as held, in its unit.
     """
 
     name: str
@@ -49,8 +47,6 @@ class Law:
     stated: bool
     rows: np.ndarray
     variables: np.ndarray
-    price: float = 1.0
-    held: float = _HELD
 
 
 def laws_of(program: GaitProgram) -> list[Law]:
@@ -70,19 +66,21 @@ def laws_of(program: GaitProgram) -> list[Law]:
     for number, name in enumerate(program.design.names):
         variables.setdefault(_law_of_variable(program, number, name), []).append(number)
     words = _words(program)
-    sizes = program.row_scale[[number for number, name in enumerate(program.row_names)
-                               if name.startswith("friction |")]]  # fmt: skip
-    price = _FRICTION_PRICE * float(sizes.max(initial=0.0)) / formulation.body_weight**2
     known = [name for name in words if name in rows or name in variables]
     return [
         Law(
             name, *words[name],
             _mask(rows.get(name, ()), program.num_constraints),
             _mask(variables.get(name, ()), program.num_variables),
-            *((price, _FRICTION_HELD) if name == FRICTION else (1.0, _HELD)),
         )
         for name in known
     ]  # fmt: skip
+
+
+def cheap_prices(elastic: ElasticProgram) -> np.ndarray:
+    """Price of one unit of each soft row where its law is given up (num_soft,)."""
+    size = elastic.row_scale[elastic.ends] / elastic.formulation.body_weight**2
+    return np.where(elastic.slips, _CHEAP_FRICTION * size, _CHEAP)
 
 
 def _mask(which: object, size: int) -> np.ndarray:

@@ -74,7 +74,7 @@ def place_of(relaxation: Relaxation, relaxed: Relaxed, law: str) -> Place | None
     if abs(missing[worst]) == 0.0:
         return None
     row, amount = int(rows[worst]), float(missing[worst])
-    kind, _, name = elastic.row_names[row].split(" | ")
+    kind, _, name = elastic.row_names[row].split(" | ", 2)
     point = _point_of(relaxation.program, row)
     x = elastic.unknowns(relaxed.point)
     unit = elastic.row_units[row]

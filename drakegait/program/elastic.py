@@ -18,9 +18,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.program.gait_program import GaitProgram
+from drakegait.program.ground_forces import FRICTION_REGULARISATION
 from drakegait.program.lagrangian_hessian import LagrangianHessian
+from drakegait.walker.feet import ContactSettings
 
 SHARE = 0.05  # of f: its multipliers, of the order of 1 per tolerance, stay below the price of 1
+_PRICE = 1.0  # of a tolerance or typical size
+# A row of friction is a difference of squared forces, and flat where a foot bears little: it has to
+# be dearer, or light feet slip.
+_FRICTION_PRICE = 100.0
+# What friction misses of its own size (1.4 % of the body weight on a usual ground) and other laws of
+# theirs, and count as held. Friction has to hold with a little to spare (its regularisation), too.
+_FRICTION_HELD, _HELD = 2e-4, 0.02
+_HARD = 0.02  # of a tolerance or typical size: what rows may be off that are not soft
+# Excitations never lack a force that obeys them, and contact forces by least squares (17) are a
+# definition.
+_ALWAYS = ("excitation |", "least-squares contact forces |")
 
 
 @dataclass(frozen=True)
@@ -46,9 +59,22 @@ class ElasticProgram:
     Attributes:
         ends: the soft rows, in the numbering of this program (num_soft,).
         freed: the soft variables; their rows come last.
+        slips: which of them are rows of friction (num_soft,).
         short, over: positions in `ends` of what has p and of what has n.
-        prices: of one unit of each soft row (num_soft,).
+        prices: of one unit of each soft row, at first those at which laws are to hold (num_soft,).
+        held: how far each soft row may be off and count as held, in its unit (num_soft,).
     """
+
+    @classmethod
+    def of(cls, program: GaitProgram) -> ElasticProgram:
+        """With all laws elastic that could break: all rows but those that can always hold, and the
+        bounds of contact forces, steps and the stride time."""
+        rows = np.array([not name.startswith(_ALWAYS) for name in program.row_names])
+        names = np.array(program.design.names)
+        forces = np.char.startswith(names, "contact force")
+        forces &= np.isfinite(program.design.lower)
+        steps = np.char.startswith(names, "step ") | (names == "stride time")
+        return cls(program, rows, forces | steps)
 
     def __init__(self, program: GaitProgram, soft_rows: np.ndarray, soft_variables: np.ndarray):
         self.program, self.formulation = program, program.formulation
@@ -56,7 +82,13 @@ class ElasticProgram:
         self._size, count = program.num_variables, program.num_constraints
         added = count + np.arange(len(self.freed))
         self.ends = np.concatenate([np.flatnonzero(soft_rows), added])
-        self.prices = np.ones(len(self.ends))
+        slip = np.array([name.startswith("friction |") for name in program.row_names], dtype=bool)
+        slip = np.append(slip, np.zeros(len(self.freed), dtype=bool))[self.ends]
+        self.slips = slip
+        self.prices = np.where(slip, _FRICTION_PRICE, _PRICE)
+        slippery = (program.formulation.contact.friction / ContactSettings().friction) ** 2
+        spare = FRICTION_REGULARISATION / min(1.0, slippery)
+        self.held = np.where(slip, _FRICTION_HELD + spare, _HELD)
         lower, upper = program.design.lower.copy(), program.design.upper.copy()
         self.lower = np.concatenate([program.lower, lower[self.freed]])
         self.upper = np.concatenate([program.upper, upper[self.freed]])
@@ -114,6 +146,13 @@ class ElasticProgram:
         found[self.short] = off[: len(self.short)]
         found[self.over] -= off[len(self.short) :]
         return found
+
+    def off(self, extended: np.ndarray) -> np.ndarray:
+        """How far each soft row is off, in units of what counts as held (num_soft,); infinite
+        where rows that are not soft do not hold."""
+        if self.violations(extended).max() > _HARD:
+            return np.full(len(self.ends), np.inf)
+        return np.abs(self.missing(extended)) / self.held
 
     @property
     def _slope(self) -> np.ndarray:

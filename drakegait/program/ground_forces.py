@@ -25,7 +25,7 @@ from drakegait.program.local_state import LocalState
 from drakegait.walker import feet
 from drakegait.walker.feet import ContactSettings
 
-_REGULARISATION = 1e-6  # of squared body weight, docs/formulation.md 6.9
+FRICTION_REGULARISATION = 1e-6  # of squared body weight, docs/formulation.md 6.9
 _USUAL = ContactSettings().friction
 
 
@@ -48,7 +48,7 @@ class Friction(DenseRows):
         super().__init__(formulation, points)
         slippery = min(1.0, formulation.contact.friction / _USUAL)
         self.scale = np.full(2, (slippery * formulation.body_weight) ** 2)
-        self._least = _REGULARISATION / slippery**2
+        self._least = FRICTION_REGULARISATION / slippery**2
         self.lower, self.upper = np.zeros(2), np.full(2, np.inf)
         loaded = points.loaded[:, : feet.NUM_ROWS]
         by_foot = loaded.reshape(points.num, 2, feet.ROWS_PER_FOOT)

@@ -27,7 +27,7 @@ class Known:
         left = [conflict for conflict in self.conflicts if not conflict & cheap]
         broken = tuple(name for name in NAMES if any(name in conflict for conflict in left))
         members = set().union(*self.conflicts)
-        pull = {name: float(name in members) for name in NAMES}
+        pull = {name: 2.0 * (name in members) for name in NAMES}
         return Relaxed(cheap, np.zeros(1), np.zeros(1), broken, True, pull)
 
 

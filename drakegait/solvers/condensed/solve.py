@@ -3,7 +3,9 @@
 Drake's IPOPT and `ipopt_mumps` take any program and spend most of their time in sparse
 factorisations of some 14 000 unknowns. Here contact forces and residuals are eliminated at
 their control points and slacks with their rows, which leaves a dense matrix of a few hundred.
-Programs that this does not cover go to `ipopt_mumps`, and the message says so.
+Programs that this does not cover go to `ipopt_mumps`, and the message says so. Where rows get no
+better, or no step is acceptable, the elastic program (`solve_least`) tells whether the laws can
+hold near here: if so, the solve goes on from there; if not, that is the answer.
 """
 
 from __future__ import annotations
@@ -16,19 +18,18 @@ from drakegait.program.gait_program import GaitProgram
 from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.solvers.condensed.interior_point import InteriorPoint
 from drakegait.solvers.condensed.iterate import Multipliers
+from drakegait.solvers.condensed.iterate_to_end import iterate, last_barrier, solution_of
+from drakegait.solvers.condensed.solve_elastic import solve_least
 from drakegait.solvers.condensed.supported import why_not
 from drakegait.solvers.condensed.system import CondensedSystem
 from drakegait.solvers.monitor import Monitor
 from drakegait.solvers.options import SolverOptions
-from drakegait.solvers.settled import Settled
 from drakegait.solvers.solution import Solution
 
 FIRST_BARRIER, WARM_BARRIER = 1e-3, 1e-4
 # Of a start from its bounds, relative. A first start stands far off: its forces say little about
 # which muscles will be silent, and what stands at a bound is slow to leave it.
 _PUSH, _WARM_PUSH = 0.2, 1e-2
-COMPLEMENTARITY = 0.01  # of the tolerance on optimality
-LAST_BARRIER = 0.09  # of the tolerance on complementarity
 
 
 def solve_condensed(
@@ -48,80 +49,33 @@ def solve_condensed(
     reason = why_not(program, options)
     if reason:
         return _by_ipopt(program, x, options, monitor, warm, f"{reason}: by ipopt-mumps")
-    system = CondensedSystem(program, LagrangianHessian(program))
     first = options.barrier_start or (WARM_BARRIER if warm else FIRST_BARRIER)
-    method = InteriorPoint(
-        program,
-        system,
-        x,
-        barrier=first,
-        last_barrier=LAST_BARRIER * (COMPLEMENTARITY * options.optimality),
-        push=_WARM_PUSH if warm else _PUSH,
-        known=known,
-    )
+    found, method = _solved(program, x, options, monitor, first, _WARM_PUSH if warm else _PUSH, known)
+    if found.status:
+        return found
+    # Where there is no going on, the walk that breaks the laws least tells whether they can hold.
+    least = solve_least(program, method.x, monitor)
+    spent = found.iterations + least.iterations
+    if least.status:
+        return replace(least, iterations=spent, detail=f"{found.detail}; {least.detail}")
+    monitor.begin(program)
+    again, method = _solved(program, least.x, options, monitor, WARM_BARRIER, _WARM_PUSH, None)
+    detail = f"{found.detail}; {least.detail}; {again.detail}"
+    if again.status:
+        return replace(again, iterations=spent + again.iterations, detail=detail)
+    return _by_ipopt(program, method.x, options, monitor, True, f"{detail}: on by ipopt-mumps")
+
+
+def _solved(
+    program: GaitProgram, x: np.ndarray, options: SolverOptions, monitor: Monitor, barrier: float,
+    push: float, known: Multipliers | None,
+) -> tuple[Solution, InteriorPoint]:  # fmt: skip
+    """One run; its status is empty where there is no going on."""
+    system = CondensedSystem(program, LagrangianHessian(program))
+    method = InteriorPoint(program, system, x, barrier, last_barrier(options), push, known)
     iterations, status, detail = iterate(method, options, monitor)
     program.smoothing = 1.0
-    if not status:
-        return _by_ipopt(program, method.x, options, monitor, True, f"{detail}: on by ipopt-mumps")
-    return solution_of(method, monitor, iterations, status, detail)
-
-
-def iterate(
-    method: InteriorPoint, options: SolverOptions, monitor: Monitor
-) -> tuple[int, str, str]:
-    """Step until it has converged or is stopped.
-
-    Returns:
-        Iterations, status, and how it ended; the status is empty where no step is acceptable.
-    """
-    complementarity = COMPLEMENTARITY * options.optimality
-    monitor.step(method.x, 0)
-    settled = Settled(options)
-    iterations = 0
-    while True:
-        errors = method.errors(0.0)
-        if (
-            method.smoothing == 1.0
-            and errors.dual <= options.optimality
-            and errors.primal <= options.feasibility
-            and errors.complementarity <= complementarity
-        ):
-            detail = f"KKT errors {errors.dual:.1e}, {errors.primal:.1e}"
-            return iterations, "converged", detail
-        if settled.reached and method.at_last_barrier:
-            return iterations, "converged", settled.sentence
-        if monitor.stop_reason is not None:
-            return iterations, monitor.stop_reason, ""
-        if iterations >= options.max_iterations:
-            return iterations, "iteration_limit", ""
-        if settled.reached:
-            method.lower_barrier(settled.FACTOR)
-        elif method.little_left:
-            method.lower_barrier()
-        while method.solved_barrier_problem() and not method.at_last_barrier:
-            method.lower_barrier()
-        if not method.step():
-            return iterations, "", "no acceptable step"
-        iterations += 1
-        monitor.step(method.x, iterations)
-        settled.after(method.cost, method.violation, method.barrier)
-
-
-def solution_of(
-    method: InteriorPoint, monitor: Monitor, iterations: int, status: str, detail: str
-) -> Solution:
-    """What `iterate` found, or the best of what it saw."""
-    end = method.x if status == "converged" or monitor.best is None else monitor.best
-    lower, upper = method.bound_multipliers
-    return Solution(
-        x=np.array(end),
-        status=status,
-        iterations=iterations,
-        detail=detail,
-        row_multipliers=method.multipliers.rows.copy(),
-        lower_multipliers=lower,
-        upper_multipliers=upper,
-    )
+    return solution_of(method, monitor, iterations, status, detail), method
 
 
 def _by_ipopt(

@@ -1,0 +1,84 @@
+"""The steps of one solve, until it has converged or is stopped."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from drakegait.solvers.condensed.interior_point import InteriorPoint
+from drakegait.solvers.condensed.stalled import Stalled
+from drakegait.solvers.monitor import Monitor
+from drakegait.solvers.options import SolverOptions
+from drakegait.solvers.settled import Settled
+from drakegait.solvers.solution import Solution
+
+_COMPLEMENTARITY = 0.01  # tolerance, of that on optimality
+_LAST_BARRIER = 0.09  # of the tolerance on complementarity
+
+
+def last_barrier(options: SolverOptions) -> float:
+    """The smallest barrier parameter."""
+    return _LAST_BARRIER * (_COMPLEMENTARITY * options.optimality)
+
+
+def iterate(
+    method: InteriorPoint, options: SolverOptions, monitor: Monitor, patient: bool = False
+) -> tuple[int, str, str]:
+    """Step until it has converged or is stopped.
+
+    Args:
+        patient: go on where violated rows get no better.
+
+    Returns:
+        Iterations, status, and how it ended; the status is empty where there is no going on.
+    """
+    complementarity = _COMPLEMENTARITY * options.optimality
+    monitor.step(method.x, 0)
+    settled, stalled = Settled(options), Stalled()
+    iterations = 0
+    while True:
+        errors = method.errors(0.0)
+        if (
+            method.smoothing == 1.0
+            and errors.dual <= options.optimality
+            and errors.primal <= options.feasibility
+            and errors.complementarity <= complementarity
+        ):
+            detail = f"KKT errors {errors.dual:.1e}, {errors.primal:.1e}"
+            return iterations, "converged", detail
+        if settled.reached and method.at_last_barrier:
+            return iterations, "converged", settled.sentence
+        if monitor.stop_reason is not None:
+            return iterations, monitor.stop_reason, ""
+        if iterations >= options.max_iterations:
+            return iterations, "iteration_limit", ""
+        if settled.reached:
+            method.lower_barrier(settled.FACTOR)
+        elif method.little_left:
+            method.lower_barrier()
+        while method.solved_barrier_problem() and not method.at_last_barrier:
+            method.lower_barrier()
+        if stalled.reached and not patient:
+            return iterations, "", "laws remain broken"
+        if not method.step():
+            return iterations, "", "no acceptable step"
+        iterations += 1
+        monitor.step(method.x, iterations)
+        settled.after(method.cost, method.violation, method.barrier)
+        stalled.after(method.violation)
+
+
+def solution_of(
+    method: InteriorPoint, monitor: Monitor, iterations: int, status: str, detail: str
+) -> Solution:
+    """What `iterate` found, or the best of what it saw."""
+    end = method.x if status == "converged" or monitor.best is None else monitor.best
+    lower, upper = method.bound_multipliers
+    return Solution(
+        x=np.array(end),
+        status=status,
+        iterations=iterations,
+        detail=detail,
+        row_multipliers=method.multipliers.rows.copy(),
+        lower_multipliers=lower,
+        upper_multipliers=upper,
+    )

@@ -1,0 +1,24 @@
+"""Has a solve stopped to come nearer to obeying all laws?"""
+
+from __future__ import annotations
+
+_LENGTH, _LEFT = 40, 0.6  # iterations, and what they leave of the violation: then it is no way
+_NEARLY_HELD = 0.1  # tolerances: below, optimality may take its time
+
+
+class Stalled:
+    """Notices that violated rows get no better.
+
+    Attributes:
+        reached: the last iterations hardly brought the violation down.
+    """
+
+    def __init__(self) -> None:
+        self._violations: list[float] = []
+        self.reached = False
+
+    def after(self, violation: float) -> None:
+        """Take note of an iteration."""
+        self._violations = [*self._violations[-_LENGTH:], violation]
+        full = len(self._violations) > _LENGTH and violation > _NEARLY_HELD
+        self.reached = full and violation > _LEFT * self._violations[0]
