@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.errors import InvalidInput
+from drakegait.gait import Gait
 from drakegait.infeasibility.laws import MECHANICS, cheap_prices, laws_of
 from drakegait.program.elastic import ElasticHessian, ElasticProgram
 from drakegait.program.gait_program import GaitProgram
@@ -23,6 +24,7 @@ from drakegait.program.guess import guess_from_values
 from drakegait.solvers.condensed.solve_elastic import ELASTIC_OPTIONS, solve_elastic
 from drakegait.solvers.condensed.supported import why_not
 from drakegait.solvers.monitor import Monitor
+from drakegait.solvers.outcome import Outcome
 from drakegait.solvers.solution import Solution
 from drakegait.study import GaitStudy
 from drakegait.transcription.design_vector import DesignValues
@@ -59,14 +61,17 @@ class Relaxation:
         study: what has no walk.
         values: the unknowns to start from.
         monitor: of all solves.
+        near: they are those of a walk that breaks the laws least, of this study or one like it.
 
     Attributes:
         program, elastic, laws: as their classes say.
         law_of_row: number of the law of each soft row (num_soft,).
     """
 
-    def __init__(self, study: GaitStudy, values: DesignValues, monitor: Monitor):
-        self.study, self._monitor = study, monitor
+    def __init__(
+        self, study: GaitStudy, values: DesignValues, monitor: Monitor, near: bool = False
+    ):
+        self.study, self._monitor, self._near = study, monitor, near
         self._state(values)
 
     def _state(self, values: DesignValues) -> None:
@@ -89,6 +94,17 @@ class Relaxation:
         """The unknowns of a walk that breaks laws."""
         return self.program.values(self.elastic.unknowns(relaxed.point))
 
+    def gait(self, relaxed: Relaxed) -> Gait:
+        """A walk that breaks laws, as the start of a solve."""
+        outcome = Outcome(
+            solver="condensed", status="failed", message="Laws were given up.", iterations=0,
+            wall_time=0.0, setup_time=0.0, num_variables=0, num_constraints=0, jacobian_nonzeros=0,
+        )  # fmt: skip
+        points = self.program.formulation.schedule.interior_points
+        return Gait(
+            self.study.replace(interior_points=points), self.values(relaxed), outcome, {}
+        )
+
     def least(self) -> Relaxed:
         """The walk that breaks all laws least; events are free to move far."""
         found = self.give_up(())
@@ -99,6 +115,7 @@ class Relaxation:
             if stop or not np.any(moved > _AT_BOUND * formulation.event_reach):
                 break
             self._state(values)
+            self._near = True
             found = self.give_up(())
         return found
 
@@ -111,7 +128,7 @@ class Relaxation:
         given_up = np.array([law.name in cheap for law in self.laws])[self.law_of_row]
         elastic.prices = np.where(given_up, self._cheap, self._dear)
         solution = _solved(elastic, self._first if start is None else start.point, monitor,
-                           near=start is not None)  # fmt: skip
+                           near=self._near or start is not None)  # fmt: skip
         missing = elastic.missing(solution.x)
         off = self._largest(elastic.off(solution.x))
         broken = tuple(
