@@ -203,27 +203,28 @@ def find_conflict(
         say: told what is tried next.
     """
     # A law whose multipliers stay below the lower price would be kept as well at that price:
-    # giving it up changes nothing.
+    # giving it up changes nothing. Laws that a study states come first.
     suspects = [
         name for name in relaxation.names
         if name != MECHANICS and (name in least.broken or least.pull[name] > 1.0)
     ]  # fmt: skip
     alone: dict[str, Relaxed] = {}
+    tested: tuple[str, ...] = ()
     for name in suspects:
         if stopped():
             return Conflict(_enough(alone), least, alone, False, False)
         say(f"giving up {name}")
         alone[name] = relaxation.give_up((name,), least)
-    enough = _enough(alone)
-    if stopped():
-        return Conflict(enough, least, alone, False, False)
-    if enough:
+        enough, last = _enough(alone), name == suspects[-1]
+        if stopped() or enough == tested or (len(enough) < 2 and not last):
+            continue
+        # Each of these is in every conflict. If they are one, it is the only one.
         say("giving up all but " + ", ".join(enough))
         others = relaxation.give_up(set(relaxation.names) - {*enough, MECHANICS}, least)
-        if stopped():
-            return Conflict(enough, least, alone, False, False)
-        if others.broken:
+        tested = enough
+        if others.broken and not stopped():
             return Conflict(enough, least, alone, others.converged, True)
+    enough = _enough(alone)
     given_up = set(relaxation.names) - {*suspects, MECHANICS}
     for name in [name for name in reversed(suspects) if name not in enough]:
         if stopped():

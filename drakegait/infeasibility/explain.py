@@ -28,7 +28,7 @@ from drakegait.infeasibility.explanation import (
 from drakegait.infeasibility.knobs import knobs_for
 from drakegait.infeasibility.laws import MUSCLES
 from drakegait.infeasibility.place import Place, place_of, short_muscles
-from drakegait.infeasibility.remedies import RemedySearch
+from drakegait.infeasibility.remedies import MOST_FAILURES, RemedySearch
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
 from drakegait.solvers.options import SolverOptions
@@ -123,13 +123,16 @@ def _told(
     short = () if muscular is None else short_muscles(relaxation, enough[MUSCLES])
     found: dict[str, Remedy] = {}  # by the law that they ease
     tried: list[str] = []
+    failures: dict[str, int] = {}
     for knob in knobs_for(relaxation, enough, muscular, short):
         if len(found) == most or attempts.ended is not None:
             break
-        if knob.law in found:
+        if knob.law in found or failures.get(knob.law, 0) >= MOST_FAILURES:
             continue
-        search = RemedySearch(knob, relaxation.gait(enough[knob.law]), attempts)
+        near = relaxation.gait(enough[knob.law])
+        search = RemedySearch(knob, near, attempts, failures.get(knob.law, 0))
         remedy = search.run()
+        failures[knob.law] = search.failures
         if remedy is not None:
             found[knob.law] = remedy
         elif search.why:

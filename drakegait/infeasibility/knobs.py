@@ -20,6 +20,7 @@ from drakegait.infeasibility.laws import (
     FRICTION,
     MUSCLES,
     RANGE,
+    SIDES,
     SPEED,
     without_side,
     words_of_limits,
@@ -35,6 +36,7 @@ _LEAST_LOAD = 0.05  # of the body weight: below, the ratio of forces means nothi
 _STRENGTHS = (5, 10, 15, 20, 30, 40, 60, 80, 120, 160, 240, 320, 480, 640, 900)  # [% more]
 _USUAL_SPEED = 1.1  # relative to the reference: faster is unusual
 _NEARLY = 0.1  # of a change: finer is of no use to anyone
+_MANY = 0.6  # of the muscles: whoever names more of them means all
 _MOST_TOLERANCE = 5.0  # times the study's; with more it is no longer walking
 
 
@@ -230,13 +232,16 @@ def _strengths(study: GaitStudy, place: Place, short: Sequence[str]) -> list[Kno
         chosen = list(dict.fromkeys(without_side(name) for name in chosen))
     who = _words_of_muscles(study, chosen)
     everyone = list(dict.fromkeys(without_side(name) for name in known))
+    groups = [(everyone, "all muscles")]
+    if len({without_side(name) for name in chosen}) <= _MANY * len(everyone):
+        groups.insert(0, (chosen, who))
     return [
         Knob(
             MUSCLES, 0.0, tries, lambda value, names=names: _stronger(study, names, value),
             lambda value, words=words: f"with {value:g} % more strength of {words}",
             _middle(5.0), weak,
         )
-        for names, words in ((chosen, who), (everyone, "all muscles"))
+        for names, words in groups
     ]  # fmt: skip
 
 
@@ -244,10 +249,12 @@ def _words_of_muscles(study: GaitStudy, chosen: Sequence[str]) -> str:
     """Abbreviations, by side where the sides differ."""
     muscles, by_side = study.walker.muscles, {"": [], " right": [], " left": []}
     for name, short in zip(muscles.names, muscles.abbreviations, strict=True):
-        if name in chosen:
-            by_side[" right" if name.endswith("_r") else " left"].append(short)
-        elif without_side(name) in chosen and short not in by_side[""]:
+        base = without_side(name)
+        both = base in chosen or {f"{base}{side}" for side in SIDES} <= set(chosen)
+        if both and short not in by_side[""]:
             by_side[""].append(short)
+        elif name in chosen and not both:
+            by_side[" right" if name.endswith("_r") else " left"].append(short)
     parts = [", ".join(names) + side for side, names in by_side.items() if names]
     return " and ".join(parts)
 

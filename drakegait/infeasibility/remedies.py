@@ -6,7 +6,6 @@ where they cannot; what it affirms is solved, and counts only if that converges 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from drakegait.gait import Gait
@@ -15,6 +14,7 @@ from drakegait.infeasibility.explanation import Remedy
 from drakegait.infeasibility.knobs import Knob, changed_study
 from drakegait.study import GaitStudy
 
+MOST_FAILURES = 3  # solves for one law: more of them only cost time
 _MAX_HALVINGS = 3  # between a change that is too small and one that is enough
 
 
@@ -34,50 +34,59 @@ class RemedySearch:
         knob: what may change.
         near: the walk that gives up the knob's law.
         attempts: by which to solve.
+        failures: solves for this law that found nothing so far.
 
     Attributes:
+        failures: these and further ones.
         why: what came of the last value, once none was found.
     """
 
-    def __init__(self, knob: Knob, near: Gait, attempts: Attempts):
+    def __init__(self, knob: Knob, near: Gait, attempts: Attempts, failures: int = 0):
         self._knob, self._near, self._attempts = knob, near, attempts
-        self.why = ""
+        self.failures, self.why = failures, ""
 
     def run(self) -> Remedy | None:
         """The remedy; None if there is none or no time."""
-        for candidate in self._candidates():
-            words = self._knob.words(candidate.value)
-            self._attempts.say(f"solving {words}")
-            gait, why = self._attempts.walk(candidate.study, (candidate.near,))
-            if gait is not None:
-                return Remedy(words, candidate.study, gait)
-            if self._attempts.ended is not None:
-                break
-            self.why = f"{words} ({why})"
-        return None
-
-    def _candidates(self) -> Iterator[_Candidate]:
-        """Values that may do, mildest first."""
         failed = self._knob.now
         for value in self._knob.values:
             found = self._asked(value, self._near)
             if found is not None:
-                yield from self._milder(failed, found)
+                # The mildest is at the limit of what can be, where solves are hard; what lies
+                # between it and the first that was affirmed may fail as well.
+                for candidate in dict.fromkeys((self._mildest(failed, found), found)):
+                    remedy = self._solved(candidate)
+                    if remedy is not None:
+                        return remedy
+            if self.failures >= MOST_FAILURES or self._attempts.ended is not None:
+                break
             failed = value
+        return None
 
-    def _milder(self, failed: float, enough: _Candidate) -> list[_Candidate]:
-        """Values from the mildest that may do up to `enough`, by halving."""
-        found = [enough]
+    def _solved(self, candidate: _Candidate) -> Remedy | None:
+        """The walk with this change, if there is one."""
+        if self.failures >= MOST_FAILURES or self._attempts.ended is not None:
+            return None
+        words = self._knob.words(candidate.value)
+        self._attempts.say(f"solving {words}")
+        gait, why = self._attempts.walk(candidate.study, (candidate.near,))
+        if gait is not None:
+            return Remedy(words, candidate.study, gait)
+        self.failures += 1
+        self.why = f"{words} ({why})"
+        return None
+
+    def _mildest(self, failed: float, enough: _Candidate) -> _Candidate:
+        """The mildest value that may do, between `failed` and `enough`, by halving."""
         for _ in range(_MAX_HALVINGS):
-            value = self._knob.middle(failed, found[0].value)
+            value = self._knob.middle(failed, enough.value)
             if value is None:
                 break
-            milder = self._asked(value, found[0].near)
+            milder = self._asked(value, enough.near)
             if milder is None:
                 failed = value
             else:
-                found.insert(0, milder)
-        return found
+                enough = milder
+        return enough
 
     def _asked(self, value: float, near: Gait) -> _Candidate | None:
         """Whether all laws can hold with this value."""
