@@ -36,6 +36,7 @@ from drakegait.study_rules import check_number
 
 TIME_LIMIT = 600.0  # [s]
 MOST_REMEDIES = 2
+_LATER_FAILURES = 2  # solves without success once a remedy is known
 _MAX_ITERATIONS = 200  # of a solve that verifies; walks take 40 to 150
 # Ends of a solve that was still on its way.
 _ON_ITS_WAY = ("iteration_limit", "acceptable")
@@ -124,14 +125,18 @@ def _told(
     found: dict[str, Remedy] = {}  # by the law that they ease
     tried: list[str] = []
     failures: dict[str, int] = {}
+    later = 0
     for knob in knobs_for(relaxation, enough, muscular, short):
         if len(found) == most or attempts.ended is not None:
             break
-        if knob.law in found or failures.get(knob.law, 0) >= MOST_FAILURES:
+        # Another remedy beside one is not worth many solves.
+        spent = MOST_FAILURES - _LATER_FAILURES + later if found else failures.get(knob.law, 0)
+        if knob.law in found or spent >= MOST_FAILURES:
             continue
-        near = relaxation.gait(enough[knob.law])
-        search = RemedySearch(knob, near, attempts, failures.get(knob.law, 0))
+        search = RemedySearch(knob, relaxation.gait(enough[knob.law]), attempts, spent)
         remedy = search.run()
+        if found:
+            later += search.failures - spent
         failures[knob.law] = search.failures
         if remedy is not None:
             found[knob.law] = remedy

@@ -51,9 +51,10 @@ class RemedySearch:
         for value in self._knob.values:
             found = self._asked(value, self._near)
             if found is not None:
-                # The mildest is at the limit of what can be, where solves are hard; what lies
-                # between it and the first that was affirmed may fail as well.
-                for candidate in dict.fromkeys((self._mildest(failed, found), found)):
+                # The mildest is at the limit of what can be, where solves are hard; where it
+                # fails, what lies between it and the first that was affirmed may fail as well.
+                mildest = found if self.failures else self._mildest(failed, found)
+                for candidate in dict.fromkeys((mildest, found)):
                     remedy = self._solved(candidate)
                     if remedy is not None:
                         return remedy

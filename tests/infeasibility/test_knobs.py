@@ -199,7 +199,18 @@ def test_muscles_of_both_legs_are_named_by_side():
     relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
     names = ("soleus_l", "vasti_r", "soleus_r")
     first = knobs_for(rest, {"muscles": relaxed}, PLACE, names)[0]
-    assert first.words(20) == "with 20 % more strength of VAS, SOL right and SOL left"
+    assert first.words(20) == "with 20 % more strength of SOL and VAS right"
     ratio = first.study(20).walker.muscles.f_max / study.walker.muscles.f_max
     stronger = {study.walker.muscles.names[i] for i in np.flatnonzero(ratio > 1.01)}
     assert stronger == {*names}
+
+
+def test_whoever_names_most_muscles_means_all():
+    few, many = ("soleus_r", "vasti_r"), tuple(weak(TINY, 0.2).walker.muscles.names)
+    rest = AtRest.__new__(AtRest)
+    rest.study = weak(TINY, 0.2)
+    relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
+    for names, groups in ((few, ["VAS, SOL", "all muscles"]), (many, ["all muscles"])):
+        found = knobs_for(rest, {"muscles": relaxed}, PLACE, names)
+        words = [knob.words(20) for knob in found if "strength" in knob.words(20)]
+        assert words == [f"with 20 % more strength of {group}" for group in groups]

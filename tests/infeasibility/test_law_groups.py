@@ -7,7 +7,8 @@ import pytest
 from infeasibility_cases import TINY, limited
 
 from drakegait.errors import InvalidInput
-from drakegait.infeasibility.laws import laws_of
+from drakegait.infeasibility.laws import cheap_prices, laws_of
+from drakegait.program.elastic import ElasticProgram
 from drakegait.program.gait_program import GaitProgram
 from drakegait.study import GaitStudy
 from drakegait.walker.disorders import Asymmetry
@@ -29,14 +30,17 @@ def program_of(name: str) -> GaitProgram:
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_every_row_but_excitations_is_in_exactly_one_group(name):
+def test_every_row_and_bound_that_may_break_is_in_exactly_one_group(name):
     program = program_of(name)
+    elastic = ElasticProgram.of(program)
+    soft = np.zeros(elastic.num_constraints, dtype=bool)
+    soft[elastic.ends] = True
     count = np.sum([law.rows for law in laws_of(program)], axis=0)
-    excitation = np.array([row.startswith("excitation") for row in program.row_names])
-    assert excitation.any()
-    assert (count == np.where(excitation, 0, 1)).all()
+    assert (count == soft[: program.num_constraints]).all()
+    freed = np.zeros(program.num_variables, dtype=bool)
+    freed[elastic.freed] = True
     bounds = np.sum([law.variables for law in laws_of(program)], axis=0)
-    assert bounds.max() == 1
+    assert (bounds == freed).all()
 
 
 def test_every_group_has_something_and_stated_ones_come_first():
@@ -47,10 +51,10 @@ def test_every_group_has_something_and_stated_ones_come_first():
         assert stated == sorted(stated, reverse=True)
 
 
-def test_muscles_are_the_joints_and_balance_is_the_trunk():
+def test_muscles_are_the_joints_and_mechanics_the_trunk():
     program = program_of("spatial")
     laws = {law.name: law for law in laws_of(program)}
-    for law, of_trunk in (("muscles", False), ("balance", True)):
+    for law, of_trunk in (("muscles", False), ("mechanics", True)):
         rows = [program.row_names[i] for i in np.flatnonzero(laws[law].rows)]
         moved = [row for row in rows if row.startswith("equations of motion")]
         assert moved
@@ -82,3 +86,16 @@ def test_a_single_largest_residual_is_refused():
     program = GaitProgram(TINY.with_settings(eom_form="maximum").formulation())
     with pytest.raises(InvalidInput, match="eom_form is 'maximum'"):
         laws_of(program)
+
+
+def test_friction_that_is_given_up_costs_by_what_slips():
+    """A horizontal force of a tenth of the body weight costs the same on every ground."""
+    costs = []
+    for friction in (0.02, 0.6):
+        program = GaitProgram(TINY.with_settings(friction=friction).formulation())
+        elastic = ElasticProgram.of(program)
+        price = cheap_prices(elastic)[elastic.slips]
+        row = (0.1 * program.formulation.body_weight) ** 2 / elastic.row_scale[elastic.ends]
+        costs.append(float((price * row[elastic.slips])[0]))
+        assert (cheap_prices(elastic) < 0.01 * elastic.prices).all()
+    assert costs[0] == pytest.approx(costs[1])

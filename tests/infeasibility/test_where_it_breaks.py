@@ -73,12 +73,14 @@ def test_of_the_whole_stride_there_is_no_instant():
 @pytest.mark.parametrize(
     ("law", "row", "amount", "clause"),
     [
-        ("clearance", "clearance | right heel rise 0.50 | toe_l", 2.0,
+        ("mechanics", "clearance | right heel rise 0.50 | toe_l", 2.0,
          "The left toe is 20 mm in the ground at"),
-        ("feet", "foot contact | right single support 0.14 | toe_r z", -5.0,
+        ("mechanics", "foot contact | right single support 0.14 | toe_r z", -5.0,
          "The right toe is 10 mm too far off its print at"),
         ("friction", "friction | right single support 0.14 | foot_r", 0.01,
          "The right foot would need friction of 0."),
+        ("mechanics", "bound | stride | contact force toe_r z | control point 8", 2.0,
+         "The bound of contact force toe_r z | control point 8 is off by "),
         ("phase durations", "phase duration | right loading | time", 0.5,
          "The phase duration (time) is off by 0.05 s"),
     ],

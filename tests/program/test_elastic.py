@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from infeasibility_cases import relaxation_of
 
-from drakegait.infeasibility.elastic import SHARE, ElasticHessian, ElasticProgram
+from drakegait import GaitStudy
+from drakegait.program.elastic import SHARE, ElasticHessian, ElasticProgram
+from drakegait.program.gait_program import GaitProgram
+from drakegait.program.guess import guess_from_reference
 
 STEP = 1e-6
 
 
 @pytest.fixture(scope="module")
 def elastic() -> ElasticProgram:
-    return relaxation_of("limited").elastic
+    study = GaitStudy.planar_symmetric(11, interior_points=(3, 2, 6, 5))
+    for side in "rl":
+        study = study.with_limit(f"knee_flexion_{side}", 0.0, 0.5)
+    return ElasticProgram.of(GaitProgram(study.formulation()))
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +108,45 @@ def test_second_derivatives_are_those_of_differences(elastic, extended):
 
 def test_freed_bounds_become_rows(elastic):
     freed = elastic.ends[elastic.ends >= elastic.program.num_constraints]
-    assert len(freed)
+    assert len(freed) == len(elastic.freed)
     names = [elastic.row_names[i] for i in freed]
     assert any("step length" in name for name in names)
+    assert any("contact force" in name for name in names)
     assert np.isinf(elastic.design.lower).sum() >= len(freed)
+
+
+def test_only_what_has_a_bound_there_can_be_off_on_a_side(elastic):
+    for which, bounds in ((elastic.short, elastic.lower), (elastic.over, elastic.upper)):
+        has = np.zeros(len(elastic.ends), dtype=bool)
+        has[which] = True
+        np.testing.assert_array_equal(has, np.isfinite(bounds[elastic.ends]))
+    assert len(elastic.short) + len(elastic.over) < 2 * len(elastic.ends)
+    assert (elastic.design.lower < elastic.design.upper).all()
+
+
+def test_excitations_and_least_squares_forces_never_break(elastic):
+    kinds = {elastic.row_names[i].split(" | ")[0] for i in range(elastic.program.num_constraints)}
+    soft = {elastic.row_names[i].split(" | ")[0] for i in elastic.ends}
+    assert kinds - soft == {"excitation", "least-squares contact forces"}
+
+
+def test_friction_is_dearer_and_held_more_closely(elastic):
+    slips, prices = elastic.slips, ElasticProgram.of(elastic.program).prices
+    assert slips.any() and (prices[slips] == 100.0).all()
+    assert (prices[~slips] == 1.0).all()
+    assert elastic.held[slips].max() < 0.1 * elastic.held[~slips].min()
+
+
+def test_off_counts_in_what_is_held_and_without_hard_rows_nothing_is(elastic):
+    program = elastic.program
+    extended = elastic.start(guess_from_reference(program))
+    size = program.num_variables
+    small = extended.copy()
+    small[size:] = 0.0
+    small[size + 2] = 3.0
+    off = np.abs(elastic.missing(small)) / elastic.held
+    assert off[elastic.short[2]] == pytest.approx(3.0 / elastic.held[elastic.short[2]])
+    assert np.count_nonzero(off) == 1
+    broken = extended.copy()
+    broken[:size] += 1.0  # excitations far out of their bounds
+    assert np.isinf(elastic.off(broken)).all()
