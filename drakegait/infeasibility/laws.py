@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.errors import InvalidInput
-from drakegait.program.elastic import ElasticProgram
 from drakegait.program.design import STEP_LENGTHS, STEP_WIDTHS, STRIDE_TIMES
+from drakegait.program.elastic import ElasticProgram
 from drakegait.program.formulation import JointLimit
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.timing import TimingRows

@@ -27,8 +27,8 @@ _PRICE = 1.0  # of a tolerance or typical size
 # A row of friction is a difference of squared forces, and flat where a foot bears little: it has to
 # be dearer, or light feet slip.
 _FRICTION_PRICE = 100.0
-# What friction misses of its own size (1.4 % of the body weight on a usual ground) and other laws of
-# theirs, and count as held. Friction has to hold with a little to spare (its regularisation), too.
+# How far rows of friction (2e-4: 1.4 % of the body weight on a usual ground) and others may be off
+# and count as held. Friction has to hold with a little to spare, its regularisation.
 _FRICTION_HELD, _HELD = 2e-4, 0.02
 _HARD = 0.02  # of a tolerance or typical size: what rows may be off that are not soft
 # Excitations never lack a force that obeys them, and contact forces by least squares (17) are a

@@ -19,7 +19,9 @@ class Known:
     names = NAMES
 
     def __init__(self, *conflicts: str):
-        self.conflicts = [frozenset(words.replace("_", " ") for words in line.split()) for line in conflicts]
+        self.conflicts = [
+            frozenset(name.replace("_", " ") for name in line.split()) for line in conflicts
+        ]
         self.asked: list[frozenset[str]] = []
         self.pulled: tuple[str, ...] = ()
 

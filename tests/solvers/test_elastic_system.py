@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+import scipy.linalg
 
 from drakegait import GaitStudy
 from drakegait.program.elastic import ElasticHessian, ElasticProgram
@@ -84,13 +87,13 @@ def test_it_factorises_only_where_the_step_is_one_of_descent(case: Case) -> None
     assert np.linalg.eigvalsh(size[:, None] * reduced * size)[0] > 0.0
 
 
-def _elimination(random: np.random.Generator):
-    class Elimination:
-        contact = random.normal(size=(4, 3, 5))
-        by_shared = random.normal(size=(4, 8, 6))
-
-    Elimination.inverse = np.linalg.inv(Elimination.contact @ np.swapaxes(Elimination.contact, 1, 2))
-    return Elimination
+def _elimination(random: np.random.Generator) -> SimpleNamespace:
+    """Contact rows, the inverse of their Gram matrix, and a map to local unknowns."""
+    contact = random.normal(size=(4, 3, 5))
+    inverse = np.linalg.inv(contact @ np.swapaxes(contact, 1, 2))
+    return SimpleNamespace(
+        contact=contact, inverse=inverse, by_shared=random.normal(size=(4, 8, 6))
+    )
 
 
 def test_where_local_unknowns_are_not_convex_reserves_are_stiffer() -> None:
@@ -127,8 +130,6 @@ def test_a_border_gives_way_as_far_as_its_compliance(compliance: float) -> None:
     border = Border(rows, give)
     weighed = matrix.copy()
     border.weigh(weighed, 2.0)
-    import scipy.linalg
-
     border.factored(scipy.linalg.cho_factor(weighed, lower=True))
     x, y = border.solve(b, c)
     np.testing.assert_allclose(np.concatenate([x, y]), expected, atol=1e-9)

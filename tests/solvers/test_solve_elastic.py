@@ -68,7 +68,8 @@ def test_cheap_laws_break_more_and_the_others_less() -> None:
     elastic = ElasticProgram.of(program)
     dear = elastic.prices.copy()
     first = solve_elastic(elastic, elastic.start(x), Monitor(120.0))
-    joints = np.array([elastic.row_names[i].startswith("equations of motion") for i in elastic.ends])
+    names = [elastic.row_names[i] for i in elastic.ends]
+    joints = np.array([name.startswith("equations of motion") for name in names])
     elastic.prices = np.where(joints, 2e-3, 1.0) * dear
     second = solve_elastic(elastic, first.x, Monitor(120.0), near=True)
     assert second.status == "converged"

@@ -96,7 +96,7 @@ class ElasticSystem:
             b: (num_variables,); c: (num_constraints,), read at equality rows.
         """
         elastic, size, count = self._elastic, self._inner_size, self._inner_count
-        ends, inside, soft = elastic.ends, self._of_program, self._soft_equality
+        ends, soft = elastic.ends, self._soft_equality
         free = elastic.spread(b[size:] / self._springs)  # p - n where nothing holds them
         rest = c[:count].copy()
         rest[ends[soft]] += free[soft]

@@ -49,8 +49,9 @@ def solve_condensed(
     reason = why_not(program, options)
     if reason:
         return _by_ipopt(program, x, options, monitor, warm, f"{reason}: by ipopt-mumps")
-    first = options.barrier_start or (WARM_BARRIER if warm else FIRST_BARRIER)
-    found, method = _solved(program, x, options, monitor, first, _WARM_PUSH if warm else _PUSH, known)
+    first, push = (WARM_BARRIER, _WARM_PUSH) if warm else (FIRST_BARRIER, _PUSH)
+    first = options.barrier_start or first
+    found, method = _solved(program, x, options, monitor, first, push, known)
     if found.status:
         return found
     # Where there is no going on, the walk that breaks the laws least tells whether they can hold.

@@ -5,8 +5,6 @@ An elastic program can always be satisfied, so that a solve ends at an optimum o
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from drakegait.program.elastic import ElasticProgram

@@ -105,8 +105,8 @@ class CondensedSystem:
         Args:
             multipliers: of all rows (num_constraints,).
             stiffness, diagonal, jacobian: see `Linearisation`.
-            compliance: D of all rows, how far equations of motion and equality rows of no
-                control point give way for their multipliers (num_constraints,); default not.
+            compliance: D, how far equations of motion and equality rows of no control point give
+                way for their multipliers (num_constraints,); default not.
         """
         state = self._program.state(x)
         curvature = self._hessian.local_curvature(state, multipliers, self._share, stiffness)
@@ -132,8 +132,12 @@ class CondensedSystem:
         half = np.swapaxes(by_shared, 1, 2) @ (mixed + 0.5 * local @ by_shared)
         dense += half
         dense += np.swapaxes(half, 1, 2)
-        self.give = self._give_way(elimination, local, mixed, compliance)
-        if self.reserves is not None:
+        self.reserves, self.give = None, np.zeros(len(self.equality))
+        if compliance is not None:
+            physical = compliance[self._balance] * self._balance_scale**2
+            self.reserves = Reserves(elimination, local, mixed, physical)
+            self.give = compliance.copy()
+            self.give[self._balance] *= self.reserves.share[:, None]
             dense -= self.reserves.reduction
         matrix = self._assembly.matrix(dense, blocks)
         matrix[np.arange(size), np.arange(size)] += diagonal[:size]
@@ -152,20 +156,6 @@ class CondensedSystem:
         self.at = Linearisation(
             jacobian, blocks, bends, stiffness, diagonal, elimination, local, mixed
         )
-
-    def _give_way(
-        self, elimination: LocalElimination, local: np.ndarray, mixed: np.ndarray,
-        compliance: np.ndarray | None,
-    ) -> np.ndarray:  # fmt: skip
-        """D as it is used; makes the reserves of the equations of motion."""
-        self.reserves = None
-        if compliance is None:
-            return np.zeros(len(self.equality))
-        physical = compliance[self._balance] * self._balance_scale**2
-        self.reserves = Reserves(elimination, local, mixed, physical)
-        used = compliance.copy()
-        used[self._balance] *= self.reserves.share[:, None]
-        return used
 
     def _local_hessian(self, blocks: HessianBlocks, diagonal: np.ndarray) -> np.ndarray:
         """Second derivatives by local unknowns (num, 14 + n, 14 + n), physical units."""
