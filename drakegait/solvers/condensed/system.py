@@ -261,8 +261,7 @@ class CondensedSystem:
     def _once(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         at, size, variables = self.at, self.num_shared, self._variables
         by_shared, rows = at.elimination.by_shared, at.blocks.rows[:, :3]
-        local = self._follow(c)  # at fixed shared unknowns
-        wanted = variables.local(b)
+        local, wanted = self._follow(c), variables.local(b)  # at fixed shared unknowns
         if self.reserves is not None:
             local = local + self.reserves.follow(wanted - (at.local @ local[..., None])[..., 0])
         rest = (wanted - (at.local @ local[..., None])[..., 0])[:, None]
