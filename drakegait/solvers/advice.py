@@ -22,7 +22,8 @@ _BY_LAW = {
     "speed, raise its strength, or use more nodes",
     "normal force": "the ground would have to pull: lower the speed",
     "joint limit": "a joint limit is too tight for this walk: widen it",
-    "average speed": "the speed cannot be reached within the bounds on steps and stride time",
+    "average speed": "with these muscles, this ground and these ranges the speed cannot be reached: "
+    "change it or them; `drakegait explain` tells which helps",
     "phase duration": "a contact phase would vanish or grow too long: try a speed nearer to the "
     "reference",
 }

@@ -44,7 +44,7 @@ class Outcome:
     """The end of a solve.
 
     Attributes:
-        solver: `"ipopt"`, `"snopt"`, `"ipopt-mumps"`.
+        solver: one of `options.SOLVERS`.
         status: one of `STATUSES`.
         message: what happened, in a sentence.
         iterations: of the solver, all rounds together.

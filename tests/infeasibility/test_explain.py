@@ -29,7 +29,7 @@ WALK = GaitStudy.planar_symmetric(19)
 CASES = {
     "too weak": (weak(WALK, 0.2), "muscles"),
     "too fast": (weak(WALK, 0.5).replace(speed=2.2), "speed"),
-    "too slippery": (WALK.with_settings(friction=0.02).replace(speed=1.6), "friction"),
+    "too slippery": (WALK.with_settings(friction=0.02).replace(speed=2.05), "friction"),
     "too stiff": (limited(WALK, "hip_flexion", -2.0, 2.0), "range of hip_flexion"),
 }  # fmt: skip
 
