@@ -13,7 +13,7 @@ from drakegait.solvers.options import SolverOptions
 from drakegait.study import GaitStudy
 
 _FOR_CONFLICT = 0.6  # of the time; the rest is for remedies
-_SHARE, _LEAST_SHARE = 0.15, 10.0  # of the time that is left, and [s], that one solve may take
+_SHARE, _LEAST_SHARE = 0.25, 30.0  # of the time that is left, and [s], that one solve may take
 _LEAST_TIME = 1.0  # [s] without which no solve is begun
 
 Report = Callable[[str, Progress | None], None]

@@ -111,7 +111,8 @@ class Relaxation:
         for _ in range(_MAX_RECENTRINGS):
             formulation, values = self.program.formulation, self.values(found)
             moved = np.abs(values.events - np.array(formulation.event_centres))
-            stop = self._monitor.stop_reason is not None
+            # What holds, holds wherever the events are.
+            stop = self._monitor.stop_reason is not None or not found.broken
             if stop or not np.any(moved > _AT_BOUND * formulation.event_reach):
                 break
             self._state(values)
