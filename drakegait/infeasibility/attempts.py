@@ -13,7 +13,7 @@ from drakegait.solvers.options import SolverOptions
 from drakegait.study import GaitStudy
 
 _FOR_CONFLICT = 0.6  # of the time; the rest is for remedies
-_SHARE, _LEAST_SHARE = 0.25, 30.0  # of the time that is left, and [s], that one solve may take
+_SHARE, _LEAST_SHARE = 0.25, 30.0  # of the time that is left, and [s], for one solve
 _LEAST_TIME = 1.0  # [s] without which no solve is begun
 
 Report = Callable[[str, Progress | None], None]
@@ -62,15 +62,19 @@ class Attempts:
         return self.ended is not None or self.elastic.stop_reason is not None
 
     def walk(
-        self, study: GaitStudy, guesses: Sequence[Gait | None]
+        self, study: GaitStudy, guesses: Sequence[Gait | None], share: float = _SHARE
     ) -> tuple[Gait | None, str]:
-        """A walk of `study`, converged and with its check passed, and else why there is none."""
+        """A walk of `study`, converged and with its check passed, and else why there is none.
+
+        Args:
+            share: of the time that is left, for each solve.
+        """
         why = "no time was left"
         for guess in guesses:
             if self.ended is not None:
                 break
             left = self.monitor.remaining
-            time_limit = min(max(_SHARE * left, _LEAST_SHARE), max(left, _LEAST_TIME))
+            time_limit = min(max(share * left, _LEAST_SHARE), max(left, _LEAST_TIME))
             options = self._options.replace(time_limit=time_limit)
             gait = solve(study, guess=guess, options=options, report=self._progress)
             self._interrupted |= gait.outcome.status == "interrupted"

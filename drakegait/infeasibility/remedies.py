@@ -1,7 +1,8 @@
 """The mildest change with which a walk is found.
 
 Whether the laws can hold is asked of the elastic program, which answers in a few seconds also
-where they cannot; what it affirms is solved, and counts only if that converges and passes.
+where they cannot; what it affirms is solved, and counts only if that converges and passes. The
+first change that is affirmed comes first, so that there is a remedy soon, then a milder one.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from drakegait.infeasibility.knobs import Knob, changed_study
 from drakegait.study import GaitStudy
 
 MOST_FAILURES = 3  # solves for one law: more of them only cost time
+_FIRST_SHARE, _MILDER_SHARE = 0.5, 0.2  # of the time left, for one solve
 _MAX_HALVINGS = 3  # between a change that is too small and one that is enough
 
 
@@ -49,27 +51,30 @@ class RemedySearch:
         """The remedy; None if there is none or no time."""
         failed = self._knob.now
         for value in self._knob.values:
-            found = self._asked(value, self._near)
-            if found is not None:
-                # The mildest is at the limit of what can be, where solves are hard; where it
-                # fails, what lies between it and the first that was affirmed may fail as well.
-                mildest = found if self.failures else self._mildest(failed, found)
-                for candidate in dict.fromkeys((mildest, found)):
-                    remedy = self._solved(candidate)
-                    if remedy is not None:
-                        return remedy
+            enough = self._asked(value, self._near)
+            remedy = None if enough is None else self._solved(enough, _FIRST_SHARE)
+            if enough is not None and remedy is not None:
+                return self._milder(failed, enough) or remedy
             if self.failures >= MOST_FAILURES or self._attempts.ended is not None:
                 break
             failed = value
         return None
 
-    def _solved(self, candidate: _Candidate) -> Remedy | None:
-        """The walk with this change, if there is one."""
+    def _milder(self, failed: float, enough: _Candidate) -> Remedy | None:
+        """The mildest change between `failed` and `enough` that may do, if it has a walk.
+
+        It is at the limit of what can be, where solves are hard and checks fail.
+        """
+        mildest = self._mildest(failed, enough)
+        return None if mildest is enough else self._solved(mildest, _MILDER_SHARE)
+
+    def _solved(self, candidate: _Candidate, share: float) -> Remedy | None:
+        """The walk with this change, if there is one; may take so much of the time left."""
         if self.failures >= MOST_FAILURES or self._attempts.ended is not None:
             return None
         words = self._knob.words(candidate.value)
         self._attempts.say(f"solving {words}")
-        gait, why = self._attempts.walk(candidate.study, (candidate.near,))
+        gait, why = self._attempts.walk(candidate.study, (candidate.near,), share)
         if gait is not None:
             return Remedy(words, candidate.study, gait)
         self.failures += 1
