@@ -22,7 +22,7 @@ _BY_LAW = {
     "speed, raise its strength, or use more nodes",
     "normal force": "the ground would have to pull: lower the speed",
     "joint limit": "a joint limit is too tight for this walk: widen it",
-    "average speed": "with these muscles, this ground and these ranges the speed cannot be reached: "
+    "average speed": "this speed cannot be reached with these muscles, ground and ranges: "
     "change it or them; `drakegait explain` tells which helps",
     "phase duration": "a contact phase would vanish or grow too long: try a speed nearer to the "
     "reference",

@@ -111,12 +111,18 @@ def test_the_study_itself_has_no_walk_where_its_remedy_has_one(name):
 
 
 @pytest.mark.slow
-def test_a_weak_walker_lacks_a_moment_where_its_muscles_are_saturated():
-    place = explained("too weak").place
+@pytest.mark.parametrize("name", ["too weak", "too fast"])
+def test_a_walker_lacks_a_moment_at_an_instant_of_the_half_stride_that_is_enforced(name):
+    place = explained(name).place
     assert place.law == "muscles" and place.unit == "N m"
     assert place.missing > TINY.tolerances.moment_tolerance
-    assert place.muscles and 0.0 <= place.percent <= 50.0  # half a stride is enforced
-    assert "saturated" in str(explained("too weak"))
+    assert place.helpers and 0.0 <= place.percent <= 50.0
+    assert ("saturated" in str(explained(name))) == bool(place.muscles)
+
+
+@pytest.mark.slow
+def test_a_walker_too_fast_lacks_it_where_muscles_are_saturated():
+    assert explained("too fast").place.muscles
 
 
 @pytest.mark.slow
