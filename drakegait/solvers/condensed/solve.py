@@ -25,7 +25,8 @@ from drakegait.solvers.solution import Solution
 
 FIRST_BARRIER, WARM_BARRIER = 1e-3, 1e-4
 # Of a start from its bounds, relative. A first start stands far off: its forces say little about
-# which muscles will be silent, and what stands at a bound is slow to leave it.
+# which muscles will be silent, and what stands at a bound is slow to leave it. A warm start keeps
+# to the width of its barrier: with a small one it comes from the optimum and would be thrown off.
 _PUSH, _WARM_PUSH = 0.2, 1e-2
 _LAST_BARRIER = 0.09  # of the tolerance on complementarity
 
@@ -56,7 +57,7 @@ def solve_condensed(
         x,
         barrier=first,
         last_barrier=_LAST_BARRIER * complementarity,
-        push=_WARM_PUSH if warm else _PUSH,
+        push=min(_WARM_PUSH, first**0.5) if warm else _PUSH,
         known=known,
     )
     monitor.step(method.x, 0)
