@@ -61,10 +61,9 @@ def _solved_on(gait: Gait, screen: Console) -> Gait:
             markup=False, soft_wrap=True,
         )  # fmt: skip
         return gait
-    before, after = gait.metabolic.cost_of_transport, found.metabolic.cost_of_transport
     screen.print(
         f"Solved on to the optimum in {outcome.iterations} iterations: f {gait.cost['total']:.5g}, "
-        f"now {found.cost['total']:.5g}; cost of transport {before:.1f}, now {after:.1f} J/m.",
+        f"now {found.cost['total']:.5g}.",
         markup=False, soft_wrap=True,
     )  # fmt: skip
     return found
