@@ -9,6 +9,7 @@ after every start.
 
     python benchmarks/robustness.py                              # planar-symmetric, 40 starts
     python benchmarks/robustness.py --model spatial --starts 40
+    python benchmarks/robustness.py --model spatial --starts 40 --continue  # those not in the file
     python benchmarks/robustness.py --print                      # tables from the file, no runs
 """
 
@@ -73,6 +74,15 @@ def run(study: GaitStudy, start: Start, options: SolverOptions, refine: bool) ->
         "phase_durations_s": gait.phase_durations.tolist(),
         "co_contraction": co_contraction(gait),
     }
+
+
+def kept(before: dict[str, Any], now: dict[str, Any]) -> list[dict[str, Any]]:
+    """Runs of the file to go on from; refuses those of another seed, refinement or version."""
+    same = ("seed", "refined", "versions")
+    differ = [name for name in same if before[name] != now[name]]
+    if differ:
+        raise SystemExit(f"cannot continue: the file differs in {', '.join(differ)}")
+    return before["runs"]
 
 
 def clusters(runs: list[dict[str, Any]]) -> list[list[dict[str, Any]]]:
@@ -163,6 +173,10 @@ def main() -> None:
     parser.add_argument("--solver", choices=SOLVERS, default=SolverOptions().solver)
     parser.add_argument("--limit", type=float, default=600.0, help="seconds for each start")
     parser.add_argument("--no-refine", action="store_true", help="no added control points")
+    parser.add_argument(
+        "--continue", dest="go_on", action="store_true",
+        help="keep starts of the same seed and versions that the file holds, and run the rest",
+    )  # fmt: skip
     parser.add_argument("--print", action="store_true", help="tables from the file, no runs")
     given = parser.parse_args()
     options = SolverOptions(solver=given.solver, time_limit=given.limit)
@@ -176,7 +190,9 @@ def main() -> None:
                 "date": datetime.date.today().isoformat(), "versions": versions(), "runs": [],
             }  # fmt: skip
             key = f"{model}, {study.nodes} nodes, {given.solver}"
-            for start in starts(given.starts, given.seed):
+            if given.go_on and key in results:
+                found["runs"] = kept(results[key], found)
+            for start in starts(given.starts, given.seed)[len(found["runs"]) :]:
                 record = run(study, start, options, not given.no_refine)
                 found["runs"].append(record)
                 found["summary"] = summarise(found["runs"])

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 EXACT = 1e-6
 """Relative KKT residual below which it is known which bounds are active."""
-WIDE_BARRIER = 1e-3
+WIDE_BARRIER = 1e-4
 """Barrier parameter for dE^t/dp above it (measured: docs/sensitivities.md)."""
 _NOTHING = 1e-8  # of cost and energy for a step: the walk does not depend on the parameter
 _DIFFERENCE = 1e-4  # of a parameter's step: about 1e-5 of its value

@@ -234,6 +234,7 @@ class _Run:
             if sizes == (program.num_constraints, program.num_variables):
                 more = {"known": Multipliers(known.rows, known.lower, known.upper)}
         self.solution = solve_program(program, x, self.options, self.monitor, warm, **more)
+        self.program = self.solution.program or program
         self.solver_time += time.monotonic() - started
         self.iterations += self.solution.iterations
 

@@ -5,18 +5,21 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+from rich.console import Console
 from rich.table import Table
 
 from drakegait.commands.gait_files import FIGURES_FOLDER, gait_path, load_gait
 from drakegait.commands.screen import console
 from drakegait.errors import BadFile, InvalidInput
+from drakegait.exact import solve_exactly
+from drakegait.gait import Gait
 from drakegait.sensitivities import Sensitivities
 
 CSV_FILE = "sensitivities.csv"
 
 
-def print_sensitivities(name: str, folder: str | None, count: int) -> None:
-    """Print the `count` largest answers and write table and picture."""
+def print_sensitivities(name: str, folder: str | None, count: int, exact: bool = False) -> None:
+    """Print the `count` largest answers and write table and picture; at the optimum if `exact`."""
     if not 1 <= count <= 60:
         raise InvalidInput("--count", count, "from 1 to 60")
     gait = load_gait(name)
@@ -26,6 +29,8 @@ def print_sensitivities(name: str, folder: str | None, count: int) -> None:
     except OSError as error:
         raise BadFile(target, f"cannot be made ({error.strerror or error}).") from None
     screen = console()
+    if exact:
+        gait = _solved_on(gait, screen)
     with screen.status("differentiating ..."):
         answers = gait.sensitivities()
     screen.print(
@@ -41,6 +46,27 @@ def print_sensitivities(name: str, folder: str | None, count: int) -> None:
         f"Files in {target}: {CSV_FILE}, sensitivities.svg, sensitivities.png.", markup=False,
         soft_wrap=True,
     )  # fmt: skip
+
+
+def _solved_on(gait: Gait, screen: Console) -> Gait:
+    """The exact optimum, or the gait as it was where none is found."""
+    with screen.status("solving on to the very optimum ..."):
+        found = solve_exactly(gait)
+    outcome = found.outcome
+    if outcome.status == "interrupted":
+        raise KeyboardInterrupt
+    if outcome.status != "converged":
+        screen.print(
+            f"The optimum itself was not found; answers are those of the gait. {outcome.message}",
+            markup=False, soft_wrap=True,
+        )  # fmt: skip
+        return gait
+    screen.print(
+        f"Solved on to the optimum in {outcome.iterations} iterations: f {gait.cost['total']:.5g}, "
+        f"now {found.cost['total']:.5g}.",
+        markup=False, soft_wrap=True,
+    )  # fmt: skip
+    return found
 
 
 def _table(answers: Sensitivities, count: int) -> Table:

@@ -10,6 +10,7 @@ fewer iterations than with quasi-Newton updates, which may also end at worse opt
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -48,11 +49,26 @@ class LocalCurvature:
     physical: PhysicalHessian
 
 
-class LagrangianHessian:
-    """Second derivatives of a program with lifted multipliers.
+@dataclass(frozen=True)
+class _Sparsity:
+    """Where local second derivatives go in the sparse matrix.
 
     Attributes:
-        rows, columns: positions of the entries, lower triangle, each once.
+        kept: those that count, of all (num * entries) of them.
+        factor: of each of those.
+        entry: the place of each of those, and then of the timing rows' ones.
+        rows, columns: of each place.
+    """
+
+    kept: np.ndarray
+    factor: np.ndarray
+    entry: np.ndarray
+    rows: np.ndarray
+    columns: np.ndarray
+
+
+class LagrangianHessian:
+    """Second derivatives of a program with lifted multipliers.
 
     Raises:
         InvalidInput: for projected multipliers, whose elimination has no second derivatives here.
@@ -66,11 +82,20 @@ class LagrangianHessian:
         self._spans = MuscleChain(program.formulation, program.points)
         self._penalties = [cost for cost in program.costs if isinstance(cost, LoadPenalty)]
         self._numbers = {type(item): k for k, item in enumerate(program.constraints)}
-        self._locate()
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Rows of the entries of the lower triangle that may differ from zero, each once."""
+        return self._sparsity.rows
+
+    @property
+    def columns(self) -> np.ndarray:
+        """Their columns."""
+        return self._sparsity.columns
 
     @property
     def num_entries(self) -> int:
-        """Number of entries of the lower triangle that may differ from zero."""
+        """Their number."""
         return len(self.rows)
 
     def values(
@@ -89,12 +114,12 @@ class LagrangianHessian:
             stiffness: weights w of the rows (num_constraints,) in an interior-point method; for
                 the excitation rows g, w g_x^T g_x is added at no cost. Others are not read.
         """
-        program, state = self._program, self._program.state(x)
+        program, state, sparsity = self._program, self._program.state(x), self._sparsity
         curvature = self.local_curvature(state, multipliers, objective, stiffness)
-        local = self._local(curvature, objective).ravel()[self._kept]
+        local = self._local(curvature, objective).ravel()[sparsity.kept]
         timing = program.timing.curvature(multipliers[program.first_timing_row :])
-        entries = np.concatenate([local * self._factor, timing])
-        return np.bincount(self._entry, entries, self.num_entries)
+        entries = np.concatenate([local * sparsity.factor, timing])
+        return np.bincount(sparsity.entry, entries, self.num_entries)
 
     def _local(self, curvature: LocalCurvature, objective: float) -> np.ndarray:
         """Second derivatives by local variables (num, entries)."""
@@ -153,7 +178,9 @@ class LagrangianHessian:
 
     # Sparsity ----------------------------------------------------------------------------
 
-    def _locate(self) -> None:
+    @cached_property
+    def _sparsity(self) -> _Sparsity:
+        """Takes a while; who works with `local_curvature` does without it."""
         program = self._program
         left, right = places(self._probe_state(), self._spans)
         left = np.concatenate([left, *(penalty.pairs[0] for penalty in self._penalties)])
@@ -161,18 +188,22 @@ class LagrangianHessian:
         index, factor = program.selection.index, program.selection.factor
         row, column = index[:, left], index[:, right]
         kept = (row >= 0) & (column >= 0) & self._possible()
-        self._kept = np.flatnonzero(kept)
         scale = (factor[:, left] * factor[:, right])[kept]
         row, column = row[kept], column[kept]
         # One local entry off the diagonal stands for two; where a mirror makes both ends the
         # same variable they fall on one place of the diagonal.
         doubled = (row == column) & np.broadcast_to(left != right, kept.shape)[kept]
-        self._factor = np.where(doubled, 2.0 * scale, scale)
         row = np.concatenate([row, program.timing.curved_rows])
         column = np.concatenate([column, program.timing.curved_columns])
         keys = np.maximum(row, column) * program.num_variables + np.minimum(row, column)
-        keys, self._entry = np.unique(keys, return_inverse=True)
-        self.rows, self.columns = keys // program.num_variables, keys % program.num_variables
+        keys, entry = np.unique(keys, return_inverse=True)
+        return _Sparsity(
+            kept=np.flatnonzero(kept),
+            factor=np.where(doubled, 2.0 * scale, scale),
+            entry=entry,
+            rows=keys // program.num_variables,
+            columns=keys % program.num_variables,
+        )
 
     def _probe_state(self) -> LocalState:
         """A state without accidental zeros; its basis rows reach all of their windows."""

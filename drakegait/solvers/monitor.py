@@ -97,6 +97,15 @@ class Monitor:
         self.best, self._best_rank = None, (np.inf, np.inf)
         self._row_names = program.row_names
 
+    def go_on(self, program: GaitProgram, x: np.ndarray) -> None:
+        """The round goes on with a program of the same unknowns and rows, from `x`.
+
+        Earlier iterates may lie outside its bounds, so that the best starts afresh.
+        """
+        self.program = program
+        self.best, self._best_rank = None, (np.inf, np.inf)
+        self.step(x, self.iteration)
+
     @property
     def elapsed(self) -> float:
         """Seconds since the monitor was made."""

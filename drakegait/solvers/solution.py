@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from drakegait.program.gait_program import GaitProgram
+
 MESSAGES = {
     "converged": "The gait meets every law and is locally optimal.",
     "acceptable": "Every law nearly holds, but the solver stopped before it met its tolerances.",
@@ -29,6 +31,8 @@ class Solution:
         row_multipliers: KKT multipliers of the rows, df/d(bound) with the sign of IPOPT
             (num_constraints,), or None.
         lower_multipliers, upper_multipliers: of the variables' bounds, or None.
+        program: what x and the multipliers belong to, where the solver moved the bounds of
+            events along (`recentred`); None: what it was given.
     """
 
     x: np.ndarray
@@ -38,6 +42,7 @@ class Solution:
     row_multipliers: np.ndarray | None = None
     lower_multipliers: np.ndarray | None = None
     upper_multipliers: np.ndarray | None = None
+    program: GaitProgram | None = None
 
 
 def status_of_ipopt(code: int, stop_reason: str | None) -> str:

@@ -10,6 +10,7 @@ from drakegait.program import physical_hessian as physical
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
 from drakegait.program.lagrangian_hessian import LagrangianHessian
+from drakegait.program.recentring import recentred
 from drakegait.solvers.condensed.centrality import Targets
 from drakegait.solvers.condensed.convexity import convex_excess
 from drakegait.solvers.condensed.interior_point import InteriorPoint
@@ -166,6 +167,30 @@ def test_targets_move_only_for_products_that_would_be_far_off() -> None:
     assert moved.low[1] == pytest.approx(40.0 * mu)  # no more than 10 mu at once
     assert moved.low[2] == pytest.approx(0.1 * mu)
     assert moved.low[3] == 0.0
+
+
+def test_bounds_that_move_along_change_nothing_else(program: GaitProgram) -> None:
+    """The optimum's laws do not know where the windows of events stand."""
+    x = guess_from_reference(program)
+    method = InteriorPoint(
+        program, CondensedSystem(program, LagrangianHessian(program)), x, 1e-4, 1e-6, push=0.1
+    )
+    for _ in range(3):
+        assert method.step()
+    assert recentred(method.program, method.x, 2.0) is None
+    moved = recentred(method.program, method.x, 0.0)
+    assert moved is not None
+    events = moved.values(method.x).events
+    np.testing.assert_allclose(moved.formulation.event_centres, events, atol=1e-12)
+    before = method.cost, method.primal
+    lower, _ = method.gaps(method.w)
+    products = np.where(method.has_low, lower, 0.0) * method.multipliers.lower
+    method.move_bounds(moved, CondensedSystem(moved, LagrangianHessian(moved)))
+    assert method.cost == pytest.approx(before[0], rel=1e-12)
+    np.testing.assert_allclose(method.primal, before[1], atol=1e-9)
+    after = np.where(method.has_low, method.gaps(method.w)[0], 0.0) * method.multipliers.lower
+    np.testing.assert_allclose(after, products, rtol=1e-9)
+    assert method.step()
 
 
 def test_corners_narrow_with_the_barrier_and_end_at_their_own_width(program: GaitProgram) -> None:

@@ -49,13 +49,7 @@ class BarrierProblem:
         push: float,
         known: Multipliers | None = None,
     ):
-        self.program, self.system = program, system
-        self.inequality = np.flatnonzero(~system.equality)
-        self._target = np.where(system.equality, program.lower, 0.0)
-        self.size = program.num_variables
-        self._low = np.concatenate([program.design.lower, program.lower[self.inequality]])
-        self._high = np.concatenate([program.design.upper, program.upper[self.inequality]])
-        self.has_low, self.has_high = np.isfinite(self._low), np.isfinite(self._high)
+        self._state(program, system)
         x = inside(x, self._low[: self.size], self._high[: self.size], push)
         rows = program.rows(x)
         slacks = inside(
@@ -65,6 +59,34 @@ class BarrierProblem:
         self.barrier, self._last_barrier = barrier, last_barrier
         self.multipliers = self._first_multipliers(known)
         program.smoothing = self.smoothing
+        self.evaluate()
+
+    def _state(self, program: GaitProgram, system: CondensedSystem) -> None:
+        self.program, self.system = program, system
+        self.inequality = np.flatnonzero(~system.equality)
+        self._target = np.where(system.equality, program.lower, 0.0)
+        self.size = program.num_variables
+        self._low = np.concatenate([program.design.lower, program.lower[self.inequality]])
+        self._high = np.concatenate([program.design.upper, program.upper[self.inequality]])
+        self.has_low, self.has_high = np.isfinite(self._low), np.isfinite(self._high)
+
+    def move_bounds(self, program: GaitProgram, system: CondensedSystem) -> None:
+        """Go on with the same unknowns in a program that differs in bounds only.
+
+        Products of distances and multipliers stay: those of bounds that moved follow their
+        distances.
+
+        Args:
+            program: w lies within its bounds.
+            system: its linear systems.
+        """
+        before = self.gaps(self.w)
+        self._state(program, system)
+        after, z = self.gaps(self.w), self.multipliers
+        with np.errstate(invalid="ignore"):
+            ratios = [np.where(new != old, old / new, 1.0)
+                      for old, new in zip(before, after, strict=True)]  # fmt: skip
+        self.multipliers = Multipliers(z.rows, z.lower * ratios[0], z.upper * ratios[1])
         self.evaluate()
 
     def _first_multipliers(self, known: Multipliers | None) -> Multipliers:

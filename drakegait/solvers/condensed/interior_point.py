@@ -59,6 +59,12 @@ class InteriorPoint(BarrierProblem):
         self._filter.clear()
         self._small_steps, self._costs = 0, []
 
+    def move_bounds(self, program: GaitProgram, system: CondensedSystem) -> None:
+        """Go on with a program that differs in bounds only."""
+        super().move_bounds(program, system)
+        self._regularisation.move_to(system)
+        self._filter.clear()
+
     @property
     def little_left(self) -> bool:
         """Whether the cost of this barrier problem changes little beside what the barrier adds."""

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from drakegait.program.gait_program import GaitProgram
+from drakegait.program.lagrangian_hessian import LagrangianHessian
+from drakegait.program.recentring import recentred
 from drakegait.solvers.condensed.interior_point import InteriorPoint
 from drakegait.solvers.condensed.stalled import Stalled
+from drakegait.solvers.condensed.system import CondensedSystem
 from drakegait.solvers.monitor import Monitor
 from drakegait.solvers.options import SolverOptions
 from drakegait.solvers.settled import Settled
@@ -13,6 +17,7 @@ from drakegait.solvers.solution import Solution
 
 _COMPLEMENTARITY = 0.01  # tolerance, of that on optimality
 _LAST_BARRIER = 0.09  # of the tolerance on complementarity
+_NEAR_BOUND = 0.9  # of the reach of an event
 
 
 def last_barrier(options: SolverOptions) -> float:
@@ -21,12 +26,15 @@ def last_barrier(options: SolverOptions) -> float:
 
 
 def iterate(
-    method: InteriorPoint, options: SolverOptions, monitor: Monitor, patient: bool = False
-) -> tuple[int, str, str]:
+    method: InteriorPoint, options: SolverOptions, monitor: Monitor, patient: bool = False,
+    recentre: bool = False,
+) -> tuple[int, str, str]:  # fmt: skip
     """Step until it has converged or is stopped.
 
     Args:
         patient: go on where violated rows get no better.
+        recentre: move the bounds of events along at the last barrier parameter; before it, events
+            that the barrier pushes come back.
 
     Returns:
         Iterations, status, and how it ended; the status is empty where there is no going on.
@@ -63,8 +71,18 @@ def iterate(
             return iterations, "", "no acceptable step"
         iterations += 1
         monitor.step(method.x, iterations)
+        if recentre and method.at_last_barrier:
+            _recentre(method, monitor)
         settled.after(method.cost, method.violation, method.barrier)
         stalled.after(method.violation)
+
+
+def _recentre(method: InteriorPoint, monitor: Monitor) -> None:
+    """Move the bounds of events along where one has come near."""
+    moved = recentred(method.program, method.x, _NEAR_BOUND)
+    if moved is not None:
+        method.move_bounds(moved, CondensedSystem(moved, LagrangianHessian(moved)))
+        monitor.go_on(moved, method.x)
 
 
 def solution_of(
@@ -81,4 +99,5 @@ def solution_of(
         row_multipliers=method.multipliers.rows.copy(),
         lower_multipliers=lower,
         upper_multipliers=upper,
+        program=method.program if isinstance(method.program, GaitProgram) else None,
     )

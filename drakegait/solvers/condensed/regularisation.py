@@ -30,6 +30,10 @@ class Regularisation:
         self._convexity = 0.0
         self._shift, self._last_shift = 0.0, 0.0
 
+    def move_to(self, system: CondensedSystem) -> None:
+        """Go on with the matrices of `system`, which is like the one before."""
+        self._system = system
+
     def factor(self, creeping: bool) -> bool:
         """Factorise K with as little as serves; False if nothing does.
 

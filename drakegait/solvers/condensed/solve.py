@@ -28,7 +28,8 @@ from drakegait.solvers.solution import Solution
 
 FIRST_BARRIER, WARM_BARRIER = 1e-3, 1e-4
 # Of a start from its bounds, relative. A first start stands far off: its forces say little about
-# which muscles will be silent, and what stands at a bound is slow to leave it.
+# which muscles will be silent, and what stands at a bound is slow to leave it. A warm start keeps
+# to the width of its barrier: with a small one it comes from the optimum and would be thrown off.
 _PUSH, _WARM_PUSH = 0.2, 1e-2
 
 
@@ -51,17 +52,20 @@ def solve_condensed(
         return _by_ipopt(program, x, options, monitor, warm, f"{reason}: by ipopt-mumps")
     first, push = (WARM_BARRIER, _WARM_PUSH) if warm else (FIRST_BARRIER, _PUSH)
     first = options.barrier_start or first
+    push = min(push, first**0.5) if warm else push
     found, method = _solved(program, x, options, monitor, first, push, known)
     if found.status:
         return found
+    program = method.program
     # Where there is no going on, the walk that breaks the laws least tells whether they can hold.
     least = solve_least(program, method.x, monitor)
     spent = found.iterations + least.iterations
     if least.status:
-        return replace(least, iterations=spent, detail=f"{found.detail}; {least.detail}")
+        detail = f"{found.detail}; {least.detail}"
+        return replace(least, iterations=spent, detail=detail, program=program)
     monitor.begin(program)
     again, method = _solved(program, least.x, options, monitor, WARM_BARRIER, _WARM_PUSH, None)
-    detail = f"{found.detail}; {least.detail}; {again.detail}"
+    program, detail = method.program, f"{found.detail}; {least.detail}; {again.detail}"
     if again.status:
         return replace(again, iterations=spent + again.iterations, detail=detail)
     return _by_ipopt(program, method.x, options, monitor, True, f"{detail}: on by ipopt-mumps")
@@ -74,8 +78,8 @@ def _solved(
     """One run; its status is empty where there is no going on."""
     system = CondensedSystem(program, LagrangianHessian(program))
     method = InteriorPoint(program, system, x, barrier, last_barrier(options), push, known)
-    iterations, status, detail = iterate(method, options, monitor)
-    program.smoothing = 1.0
+    iterations, status, detail = iterate(method, options, monitor, recentre=True)
+    method.program.smoothing = 1.0
     return solution_of(method, monitor, iterations, status, detail), method
 
 
@@ -95,4 +99,4 @@ def _by_ipopt(
 
         options = options.replace(solver="ipopt")
     solution = other(program, x, options, monitor, warm)
-    return replace(solution, detail=f"{why}; {solution.detail}")
+    return replace(solution, detail=f"{why}; {solution.detail}", program=program)

@@ -53,7 +53,8 @@ def solve_least(program: GaitProgram, x: np.ndarray, monitor: Monitor) -> Soluti
     """The walk near `x` that breaks the laws of `program` least.
 
     Returns:
-        Its unknowns; the status is empty if all laws hold, `"infeasible"` if not.
+        Its unknowns; the status is `"infeasible"` if it breaks laws, empty if it does not or was
+        not found to its end.
     """
     elastic = ElasticProgram.of(program)
     found = solve_elastic(elastic, elastic.start(x), monitor)
@@ -62,5 +63,7 @@ def solve_least(program: GaitProgram, x: np.ndarray, monitor: Monitor) -> Soluti
         return Solution(unknowns, stopped, found.iterations, "")
     if elastic.off(found.x).max() <= 1.0:
         return Solution(unknowns, "", found.iterations, "on from where all laws hold")
+    if found.status != "converged":  # which says nothing
+        return Solution(unknowns, "", found.iterations, "on from where laws break less")
     detail = "the walk that breaks the laws least breaks some"
     return Solution(unknowns, "infeasible", found.iterations, detail)

@@ -1,0 +1,31 @@
+"""Events that reach the end of their window: the same program about where they are now.
+
+Events are bounded about centres so that every control point keeps its window of spline
+coefficients (`control_points`). Those bounds are no law of walking; they move along with the
+events. Nothing else changes: the unknowns, rows and their values stay what they were.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from drakegait.program.gait_program import GaitProgram
+
+
+def recentred(program: GaitProgram, x: np.ndarray, share: float) -> GaitProgram | None:
+    """`program` with its events bounded about those of `x`.
+
+    Args:
+        x: design vector.
+        share: of the reach of an event; None is returned where all are nearer to their centres.
+    """
+    formulation, events = program.formulation, program.values(x).events
+    moved = np.abs(events - np.array(formulation.event_centres))
+    if not np.any(moved > share * formulation.event_reach):
+        return None
+    centres = tuple(float(event) for event in events)
+    other = type(program)(replace(formulation, event_centres=centres))
+    other.smoothing = program.smoothing
+    return other
