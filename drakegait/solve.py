@@ -15,6 +15,7 @@ from drakegait.program.differences import DifferencedProgram
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_values
 from drakegait.program.kkt import KktMultipliers
+from drakegait.program.recentring import far_from_centres
 from drakegait.program.starts import REFERENCE, Start
 from drakegait.program.starts import starts as several_starts
 from drakegait.resampling import values_for
@@ -30,7 +31,7 @@ from drakegait.transcription.design_vector import DesignValues
 
 MAX_ROUNDS = 3  # of added control points
 _MAX_RECENTRINGS = 3
-_AT_BOUND = 0.02  # of the reach of an event
+_AT_BOUND = 0.98  # of the reach of an event
 
 
 def solve(
@@ -216,10 +217,8 @@ class _Run:
     def _recentre(self) -> None:
         """Events are bounded so that control points keep their window; move the bounds along."""
         for _ in range(_MAX_RECENTRINGS):
-            formulation = self.program.formulation
             values = self.program.values(self.solution.x)
-            moved = np.abs(values.events - np.array(formulation.event_centres))
-            at_bound = np.any(moved > (1.0 - _AT_BOUND) * formulation.event_reach)
+            at_bound = far_from_centres(self.program, values.events, _AT_BOUND)
             if self.solution.status != "converged" or not at_bound:
                 return
             self._again(values)

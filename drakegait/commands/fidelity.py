@@ -8,9 +8,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from drakegait.commands.paper import INTERRUPTED
 from drakegait.commands.screen import console
 from drakegait.commands.stages import run_in_stages
+from drakegait.commands.sweep import INTERRUPTED
 from drakegait.errors import BadFile
 from drakegait.fidelity import document
 from drakegait.fidelity.contents import SECTIONS

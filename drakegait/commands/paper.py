@@ -11,6 +11,7 @@ from rich.text import Text
 
 from drakegait.commands.screen import console
 from drakegait.commands.stages import run_in_stages
+from drakegait.commands.sweep import INTERRUPTED
 from drakegait.errors import BadFile, InvalidInput
 from drakegait.paper import document, page
 from drakegait.paper.chapter import Chapter
@@ -20,7 +21,6 @@ from drakegait.paper.run import chapter_named
 from drakegait.paper.verdict import Verdict
 from drakegait.sweep.store import write_bytes
 
-INTERRUPTED = 130
 PAGE, NUMBERS = "paper.html", "paper_results.json"
 _COLOURS = {Verdict.YES: "green", Verdict.NO: "red"}
 

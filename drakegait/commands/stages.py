@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from drakegait.commands.sweep import SweepDisplay
+from drakegait.commands.sweep import SweepDisplay, tell_interrupted
 from drakegait.paper.chapter import Chapter
 from drakegait.paper.results import Results
 from drakegait.paper.run import run
@@ -55,8 +55,7 @@ def run_in_stages(
             retry_failed=retry_failed, report=stages.report, stage=stages.begin,
         )  # fmt: skip
     except KeyboardInterrupt:
-        text = f"Interrupted: finished studies are kept in {folder}. The same command goes on."
-        screen.print(text, markup=False, soft_wrap=True)
+        tell_interrupted(screen, folder)
         return None
     finally:
         stages.end()

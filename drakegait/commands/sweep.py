@@ -43,8 +43,7 @@ def sweep(
                 retry_failed=retry_failed, axes=asked.axes, report=display.report,
             )  # fmt: skip
     except KeyboardInterrupt:
-        text = f"Interrupted: finished studies are kept in {folder}. The same command goes on."
-        screen.print(text, markup=False, soft_wrap=True)
+        tell_interrupted(screen, folder)
         return INTERRUPTED
     display.show_notes(result.notes)
     _print_end(screen, result)
@@ -54,6 +53,12 @@ def sweep(
     text = f"Files in {folder}: {', '.join(files)} and a folder for each study."
     screen.print(text, markup=False, soft_wrap=True)
     return SOME_FAILED if result.failures else 0
+
+
+def tell_interrupted(screen: Console, folder: Path) -> None:
+    """Say what Ctrl-C leaves."""
+    text = f"Interrupted: finished studies are kept in {folder}. The same command goes on."
+    screen.print(text, markup=False, soft_wrap=True)
 
 
 class SweepDisplay:

@@ -21,6 +21,7 @@ from drakegait.infeasibility.laws import MECHANICS, cheap_prices, laws_of
 from drakegait.program.elastic import ElasticHessian, ElasticProgram
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_values
+from drakegait.program.recentring import far_from_centres
 from drakegait.solvers.condensed.solve_elastic import ELASTIC_OPTIONS, solve_elastic
 from drakegait.solvers.condensed.supported import why_not
 from drakegait.solvers.monitor import Monitor
@@ -109,11 +110,10 @@ class Relaxation:
         """The walk that breaks all laws least; events are free to move far."""
         found = self.give_up(())
         for _ in range(_MAX_RECENTRINGS):
-            formulation, values = self.program.formulation, self.values(found)
-            moved = np.abs(values.events - np.array(formulation.event_centres))
+            values = self.values(found)
             # What holds, holds wherever the events are.
             stop = self._monitor.stop_reason is not None or not found.broken
-            if stop or not np.any(moved > _AT_BOUND * formulation.event_reach):
+            if stop or not far_from_centres(self.program, values.events, _AT_BOUND):
                 break
             self._state(values)
             self._near = True

@@ -14,6 +14,17 @@ import numpy as np
 from drakegait.program.gait_program import GaitProgram
 
 
+def far_from_centres(program: GaitProgram, events: np.ndarray, share: float) -> bool:
+    """Whether an event is further from its centre than `share` of its reach.
+
+    Args:
+        events: fractions of the cycle (8,).
+    """
+    formulation = program.formulation
+    moved = np.abs(events - np.array(formulation.event_centres))
+    return bool(np.any(moved > share * formulation.event_reach))
+
+
 def recentred(program: GaitProgram, x: np.ndarray, share: float) -> GaitProgram | None:
     """`program` with its events bounded about those of `x`.
 
@@ -21,11 +32,10 @@ def recentred(program: GaitProgram, x: np.ndarray, share: float) -> GaitProgram 
         x: design vector.
         share: of the reach of an event; None is returned where all are nearer to their centres.
     """
-    formulation, events = program.formulation, program.values(x).events
-    moved = np.abs(events - np.array(formulation.event_centres))
-    if not np.any(moved > share * formulation.event_reach):
+    events = program.values(x).events
+    if not far_from_centres(program, events, share):
         return None
     centres = tuple(float(event) for event in events)
-    other = type(program)(replace(formulation, event_centres=centres))
+    other = type(program)(replace(program.formulation, event_centres=centres))
     other.smoothing = program.smoothing
     return other

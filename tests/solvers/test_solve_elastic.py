@@ -15,6 +15,7 @@ from drakegait.solvers.condensed.solve_elastic import solve_elastic, solve_least
 from drakegait.solvers.condensed.stalled import Stalled
 from drakegait.solvers.monitor import Monitor
 from drakegait.solvers.options import SolverOptions
+from drakegait.solvers.solution import Solution
 
 SMALL = GaitStudy.planar_symmetric(13, interior_points=(2, 2, 6, 4))
 WEAK = SMALL.replace(strength=dict.fromkeys(SMALL.walker.muscles.abbreviations, 0.2))
@@ -24,6 +25,12 @@ OPTIONS = SolverOptions(max_iterations=300)
 def program_of(study: GaitStudy) -> tuple[GaitProgram, np.ndarray]:
     program = GaitProgram(study.formulation())
     return program, guess_from_reference(program)
+
+
+def solved(program: GaitProgram, x: np.ndarray) -> Solution:
+    with Monitor(120.0) as monitor:
+        monitor.begin(program)
+        return solve_condensed(program, x, OPTIONS, monitor)
 
 
 @pytest.mark.solve
@@ -48,9 +55,7 @@ def test_the_walk_that_breaks_least_is_that_of_ipopt() -> None:
 @pytest.mark.solve
 def test_with_dear_laws_that_can_hold_it_is_the_program_itself() -> None:
     program, x = program_of(SMALL)
-    with Monitor(120.0) as monitor:
-        monitor.begin(program)
-        hard = solve_condensed(program, x, OPTIONS, monitor)
+    hard = solved(program, x)
     assert hard.status == "converged"
     elastic = ElasticProgram.of(program)
     elastic.prices = 30.0 * elastic.prices
@@ -81,9 +86,7 @@ def test_cheap_laws_break_more_and_the_others_less() -> None:
 @pytest.mark.solve
 def test_laws_that_cannot_hold_end_a_solve_with_the_walk_that_breaks_them_least() -> None:
     program, x = program_of(WEAK)
-    with Monitor(120.0) as monitor:
-        monitor.begin(program)
-        found = solve_condensed(program, x, OPTIONS, monitor)
+    found = solved(program, x)
     assert found.status == "infeasible"
     assert "breaks the laws least" in found.detail and "ipopt" not in found.detail
     assert program.smoothing == 1.0
@@ -99,15 +102,13 @@ def test_a_solve_that_got_stuck_goes_on_from_where_all_laws_hold(
     assert solve_least(program, x, Monitor(120.0)).status == ""
     stuck = Stalled.after
 
-    def at_once(self: Stalled, violation: float) -> None:
-        stuck(self, violation)
+    def at_once(self: Stalled, violation: float, barrier: float) -> None:
+        stuck(self, violation, barrier)
         self.reached = violation > 1.0
 
     monkeypatch.setattr(Stalled, "after", at_once)
     monkeypatch.setattr(solve_module, "_by_ipopt", None)  # nothing is left to it
-    with Monitor(120.0) as monitor:
-        monitor.begin(program)
-        found = solve_condensed(program, x, OPTIONS, monitor)
+    found = solved(program, x)
     assert found.status == "converged"
     assert "laws remain broken; on from where all laws hold" in found.detail
     assert program.violations(found.x).max() < 1e-2
@@ -123,10 +124,14 @@ def test_stalled_means_that_violations_stay() -> None:
         stalled, violation = Stalled(), 5.0
         for _ in range(41):
             assert not stalled.reached  # not before there is something to look back to
-            stalled.after(violation)
+            stalled.after(violation, 1e-4)
             violation *= ratio
         assert stalled.reached == expected
+    lowered = Stalled()
+    for iteration in range(60):  # slow, but at two barrier parameters
+        lowered.after(5.0, 1e-3 if iteration < 30 else 1e-4)
+    assert not lowered.reached
     small = Stalled()
     for _ in range(60):
-        small.after(0.05)
+        small.after(0.05, 1e-4)
     assert not small.reached

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from drakegait.program.gait_program import GaitProgram
+from drakegait.program.elastic import ElasticProgram
 from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.program.recentring import recentred
 from drakegait.solvers.condensed.interior_point import InteriorPoint
@@ -26,20 +26,19 @@ def last_barrier(options: SolverOptions) -> float:
 
 
 def iterate(
-    method: InteriorPoint, options: SolverOptions, monitor: Monitor, patient: bool = False,
-    recentre: bool = False,
-) -> tuple[int, str, str]:  # fmt: skip
+    method: InteriorPoint, options: SolverOptions, monitor: Monitor
+) -> tuple[int, str, str]:
     """Step until it has converged or is stopped.
 
-    Args:
-        patient: go on where violated rows get no better.
-        recentre: move the bounds of events along at the last barrier parameter; before it, events
-            that the barrier pushes come back.
+    An elastic program can always be satisfied: it goes on where violated rows get no better. Of
+    others the bounds of events move along, at the last barrier parameter; before it, events that
+    the barrier pushes come back.
 
     Returns:
         Iterations, status, and how it ended; the status is empty where there is no going on.
     """
     complementarity = _COMPLEMENTARITY * options.optimality
+    elastic = isinstance(method.program, ElasticProgram)
     monitor.step(method.x, 0)
     settled, stalled = Settled(options), Stalled()
     iterations = 0
@@ -65,16 +64,16 @@ def iterate(
             method.lower_barrier()
         while method.solved_barrier_problem() and not method.at_last_barrier:
             method.lower_barrier()
-        if stalled.reached and not patient:
+        if stalled.reached and not elastic:
             return iterations, "", "laws remain broken"
         if not method.step():
             return iterations, "", "no acceptable step"
         iterations += 1
         monitor.step(method.x, iterations)
-        if recentre and method.at_last_barrier:
+        if method.at_last_barrier and not elastic:
             _recentre(method, monitor)
         settled.after(method.cost, method.violation, method.barrier)
-        stalled.after(method.violation)
+        stalled.after(method.violation, method.barrier)
 
 
 def _recentre(method: InteriorPoint, monitor: Monitor) -> None:
@@ -99,5 +98,5 @@ def solution_of(
         row_multipliers=method.multipliers.rows.copy(),
         lower_multipliers=lower,
         upper_multipliers=upper,
-        program=method.program if isinstance(method.program, GaitProgram) else None,
+        program=None if isinstance(method.program, ElasticProgram) else method.program,
     )

@@ -78,7 +78,7 @@ def _solved(
     """One run; its status is empty where there is no going on."""
     system = CondensedSystem(program, LagrangianHessian(program))
     method = InteriorPoint(program, system, x, barrier, last_barrier(options), push, known)
-    iterations, status, detail = iterate(method, options, monitor, recentre=True)
+    iterations, status, detail = iterate(method, options, monitor)
     method.program.smoothing = 1.0
     return solution_of(method, monitor, iterations, status, detail), method
 

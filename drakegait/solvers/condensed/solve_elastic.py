@@ -44,7 +44,7 @@ def solve_elastic(
     monitor.begin(elastic)
     system = ElasticSystem(elastic)
     method = InteriorPoint(elastic, system, x, barrier, last_barrier(options), push)
-    iterations, status, detail = iterate(method, options, monitor, patient=True)
+    iterations, status, detail = iterate(method, options, monitor)
     elastic.smoothing = 1.0
     return solution_of(method, monitor, iterations, status or "failed", detail)
 

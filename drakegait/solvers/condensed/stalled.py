@@ -15,10 +15,14 @@ class Stalled:
 
     def __init__(self) -> None:
         self._violations: list[float] = []
+        self._barrier = 0.0
         self.reached = False
 
-    def after(self, violation: float) -> None:
-        """Take note of an iteration."""
+    def after(self, violation: float, barrier: float) -> None:
+        """Take note of an iteration; another barrier parameter may break laws again for a while."""
+        if barrier != self._barrier:
+            self._violations.clear()
+        self._barrier = barrier
         self._violations = [*self._violations[-_LENGTH:], violation]
         full = len(self._violations) > _LENGTH and violation > _NEARLY_HELD
         self.reached = full and violation > _LEFT * self._violations[0]
