@@ -46,6 +46,7 @@ def fidelity(
 
 def _write_docs(folder: Path, results: Results) -> None:
     results.save(folder / NUMBERS, document.FORMAT)
+    results = Results.load(folder / NUMBERS, document.FORMAT)  # rounded: text and numbers agree
     document.save_pictures(SECTIONS, results, folder / PICTURES)
     text = document.text(SECTIONS, results, PICTURES)
     update(folder / DOCUMENT, text, document.BEGIN, document.END)

@@ -47,7 +47,8 @@ def paper(
     screen.print(f"{folder / PAGE}", markup=False, soft_wrap=True)
     if docs is not None:
         results.save(Path(docs) / NUMBERS)
-        document.update(Path(docs) / "paper.md", document.text(chapters, results))
+        recorded = Results.load(Path(docs) / NUMBERS)  # rounded: text and numbers have to agree
+        document.update(Path(docs) / "paper.md", document.text(chapters, recorded))
         screen.print(f"{Path(docs) / 'paper.md'}", markup=False, soft_wrap=True)
     return 0
 

@@ -59,8 +59,7 @@ def test_the_figures_are_those_of_the_recorded_numbers(recorded, tmp_path):
         return [float(number) for number in re.findall(r"-?[0-9.]+", " ".join(paths))]
 
     for path in document.save_pictures(SECTIONS, recorded, tmp_path):
-        # The file of numbers is rounded, the picture of the run was not.
-        assert shapes(path) == pytest.approx(shapes(DOCS / "pictures" / path.name), abs=0.01)
+        assert shapes(path) == pytest.approx(shapes(DOCS / "pictures" / path.name), abs=1e-6)
         assert path.stat().st_size < 150_000
 
 

@@ -53,7 +53,7 @@ EXPECTED: dict[str, tuple[str, ...]] = {
         "yes",
         "no clear change",
         "yes",
-        "no",
+        "no clear change",
         "no",
         "yes",
         "no clear change",
