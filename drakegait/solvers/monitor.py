@@ -139,7 +139,8 @@ class Monitor:
         if self._report is not None and now - self._last_report >= self._interval:
             self._last_report = now
             name = self._row_names[worst] if violation > 1e-3 else ""
+            remaining = self._limit - now
             self._report(
-                Progress(self.round, self.iteration, cost, violation, name, now, self.remaining)
+                Progress(self.round, self.iteration, cost, violation, name, now, remaining)
             )
         return self.stop_reason
