@@ -1,8 +1,8 @@
-"""From dense blocks at control points to one dense matrix in the shared unknowns.
+"""From dense blocks at control points to one matrix in the shared unknowns.
 
-Control points whose windows begin at the same knot are added up by one matrix product.
-Two coefficients meet only within a window, so blocks of all pairs of functions are kept by
-knot and distance before they are put into place.
+Control points in the same interval between knots are added up by one matrix product. Two
+coefficients meet only within the support of one instant, so blocks of all pairs of functions are
+kept by knot and distance before they are put into place.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import scipy.sparse
 from drakegait.program.excitation import MuscleChain
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.hessian_blocks import NUM_LATE, HessianBlocks
+from drakegait.solvers.condensed.cyclic_band import SUPPORT, CyclicBand, CyclicBandMatrix
 
 
 class Assembly:
@@ -26,22 +27,21 @@ class Assembly:
     def __init__(self, program: GaitProgram, size: int):
         points, splines = program.points, program.formulation.splines
         layout = points.layout
-        self._n, self._m, self._width = layout.num_coordinates, layout.num_muscles, layout.width
+        self._n, self._m = layout.num_coordinates, layout.num_muscles
         self._intervals, self._size = splines.num_intervals, size
         self._functions = self._n + self._m
         self._spans = MuscleChain(program.formulation, points)
-        low, high = np.triu_indices(self._width)  # the earlier and the later coefficient
-        self._forward = low * self._width + high
-        self._backward = high * self._width + low
-        first = points.first % self._intervals
-        self._groups = []
-        for k in np.unique(first):
-            place = (k + low) % self._intervals * self._width + high - low
-            window = (k + np.arange(self._width)) % self._intervals
-            self._groups.append((np.flatnonzero(first == k), window, place))
+        self._low, self._high = np.triu_indices(SUPPORT)  # the earlier and the later coefficient
+        self._forward = self._low * SUPPORT + self._high
+        self._backward = self._high * SUPPORT + self._low
+        self._first = points.first
         parts = [program.design.selection(name) for name in ("coordinates", "forces")]
         index = np.concatenate([part.index for part in parts]).T
         factor = np.concatenate([part.factor for part in parts]).T
+        # Rows of no control point may join any unknowns.
+        free = program.jacobian_rows >= program.first_timing_row
+        beside = np.unique(program.jacobian_columns[free])
+        self.band = CyclicBand(index, size, beside[beside < size])
         self._locate(np.ascontiguousarray(index), np.ascontiguousarray(factor))
         # The few unknowns of timing and placement, and how each point's late variables are made
         # of them.
@@ -55,19 +55,22 @@ class Assembly:
 
     def _locate(self, index: np.ndarray, factor: np.ndarray) -> None:
         """Where pairs of full coefficients (intervals, functions) go in the matrix."""
-        later = (np.arange(self._intervals)[:, None] + np.arange(self._width)) % self._intervals
+        later = (np.arange(self._intervals)[:, None] + np.arange(SUPPORT)) % self._intervals
         rows, columns = index[:, None, :, None], index[later][:, :, None]
         used = (rows >= 0) & (columns >= 0)
         scale = np.where(used, factor[:, None, :, None] * factor[later][:, :, None], 0.0)
         scale[:, 0] *= 0.5  # the matrix is this and its transpose
-        self._pair_place = np.where(used, rows * self._size + columns, 0).ravel()
+        rows, columns = np.broadcast_arrays(rows, columns)
+        self._pair_place = np.zeros(used.shape, dtype=int)
+        self._pair_place[used] = self.band.places(rows[used], columns[used])
+        self._pair_place = self._pair_place.ravel()
         self._pair_scale = scale.reshape(-1, self._functions, self._functions)
         used = index.ravel() >= 0
         entries = factor.ravel()[used], (np.flatnonzero(used), index.ravel()[used])
         self._spread = scipy.sparse.csr_array(entries, shape=(index.size, self._size))
 
-    def matrix(self, dense: np.ndarray, blocks: HessianBlocks) -> np.ndarray:
-        """The sum of all blocks (size, size), symmetric.
+    def matrix(self, dense: np.ndarray, blocks: HessianBlocks) -> CyclicBandMatrix:
+        """The sum of all blocks.
 
         Args:
             dense: (num, shared, shared), symmetric, by coordinates of the orders 0, 1, 2, forces
@@ -76,25 +79,39 @@ class Assembly:
         """
         pairs, beside = self._sums(dense, blocks)
         pairs *= self._pair_scale
-        size = self._size
-        half = np.bincount(self._pair_place, pairs.ravel(), size * size).reshape(size, size)
-        matrix = half + half.T
-        beside = beside @ self._spread
-        matrix[self._late] += beside
-        matrix[:, self._late] += beside.T
+        stored = np.bincount(self._pair_place, pairs.ravel(), self.band.length)
+        matrix = CyclicBandMatrix.halved(self.band, stored)
+        matrix.add_rows(self._late, beside @ self._spread)
         own = 3 * self._n + self._m
         corner = np.swapaxes(self._late_map, 1, 2) @ dense[:, own:, own:] @ self._late_map
-        matrix[np.ix_(self._late, self._late)] += corner.sum(axis=0)
+        matrix.add_corner(self._late, corner.sum(axis=0))
         return matrix
 
+    def _groups(
+        self, rows: np.ndarray
+    ) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray, np.ndarray]]]:
+        """Basis rows of their support (num, orders, 6), and of every interval between knots the
+        points there, their coefficients' knots and the places of pairs of those."""
+        ahead = (rows != 0.0).any(axis=1).argmax(axis=1)
+        ahead = np.minimum(ahead, rows.shape[2] - SUPPORT)
+        support = ahead[:, None, None] + np.arange(SUPPORT)
+        first = (self._first + ahead) % self._intervals
+        found = []
+        for k in np.unique(first):
+            place = (k + self._low) % self._intervals * SUPPORT + self._high - self._low
+            window = (k + np.arange(SUPPORT)) % self._intervals
+            found.append((np.flatnonzero(first == k), window, place))
+        return np.take_along_axis(rows, support, axis=2), found
+
     def _sums(self, dense: np.ndarray, blocks: HessianBlocks) -> tuple[np.ndarray, np.ndarray]:
-        """By knot and distance (intervals * width, functions, functions), and with the late
+        """By knot and distance (intervals * 6, functions, functions), and with the late
         unknowns (late, intervals * functions)."""
-        n, m, width, functions = self._n, self._m, self._width, self._functions
+        n, m, functions = self._n, self._m, self._functions
         own, num = 3 * n + m, len(dense)
-        b = blocks.rows[:, :3]
+        basis, groups = self._groups(blocks.rows)
+        b = basis[:, :3]
         # Products of two basis rows, and the blocks with those rows' orders beside the points.
-        products = (b[:, :, None, :, None] * b[:, None, :, None]).reshape(num, 9, width * width)
+        products = (b[:, :, None, :, None] * b[:, None, :, None]).reshape(num, 9, -1)
         upper = products[:, :, self._forward]
         motion = dense[:, : 3 * n, : 3 * n].reshape(num, n, 3, n, 3)
         motion = motion.transpose(0, 2, 4, 1, 3).reshape(num, 9, n * n)
@@ -108,11 +125,11 @@ class Assembly:
         span = spans.coordinate_of_span * m + spans.muscle_of_span
         late = self._with_late(dense[:, own:, :own], blocks)
 
-        pairs = np.zeros((self._intervals * width, functions, functions))
+        pairs = np.zeros((self._intervals * SUPPORT, functions, functions))
         beside = np.zeros((self._intervals, late.shape[2]))
         part = np.empty((len(self._forward), functions, functions))
         own_part = part.reshape(len(part), -1)[:, n * (functions + 1) :: functions + 1]
-        for which, window, place in self._groups:
+        for which, window, place in groups:
             count = len(which)
             whole, half = products[which], upper[which]
             flat = half.reshape(count * 9, -1).T
@@ -128,7 +145,7 @@ class Assembly:
             part[:, :n, n:] = across[self._forward]
             part[:, n:, :n] = np.swapaxes(across[self._backward], 1, 2)
             pairs[place] += part
-            rows = blocks.rows[which].reshape(count * 4, width)
+            rows = basis[which].reshape(count * 4, SUPPORT)
             beside[window] += rows.T @ late[which].reshape(count * 4, -1)
         beside = beside.reshape(self._intervals, -1, functions).transpose(1, 0, 2)
         return pairs, beside.reshape(len(self._late), -1)

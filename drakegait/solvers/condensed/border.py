@@ -9,7 +9,8 @@ D is how far a row gives way for its multiplier: zero, but for laws that may bre
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg
+
+from drakegait.solvers.condensed.cyclic_band import CyclicBandFactor, CyclicBandMatrix
 
 _LITTLE = 1e-30  # compliance that is none
 
@@ -28,23 +29,23 @@ class Border:
         self._rows, self._compliance = rows, compliance
         self._few = np.flatnonzero(rows.any(axis=0))  # timing and placement
 
-    def weigh(self, matrix: np.ndarray, typical: float) -> None:
+    def weigh(self, matrix: CyclicBandMatrix, typical: float) -> None:
         """Add B^T w B to K, w about `typical`."""
         # With w of at most 1 / D, K + B^T w B is definite only if the whole system is as it should.
         self._weight = np.minimum(typical, 1.0 / np.maximum(self._compliance, _LITTLE))
         self._left = 1.0 - self._weight * self._compliance
         few = self._rows[:, self._few]
-        matrix[np.ix_(self._few, self._few)] += (self._weight * few.T) @ few
+        matrix.add_corner(self._few, (self._weight * few.T) @ few)
 
-    def factored(self, factor: tuple[np.ndarray, bool]) -> None:
+    def factored(self, factor: CyclicBandFactor) -> None:
         """Take note of the factor of K + B^T w B."""
         self._factor = factor
-        self._by_row = scipy.linalg.cho_solve(factor, self._rows.T)
+        self._by_row = factor.solve(self._rows.T)
         self._schur = self._rows @ self._by_row * self._left + np.diag(self._compliance)
 
     def solve(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """dx and y."""
         reduced = b - (self._weight * self._rows.T) @ c
-        x = scipy.linalg.cho_solve(self._factor, reduced, check_finite=False)
+        x = self._factor.solve(reduced)
         y = np.linalg.solve(self._schur, self._rows @ x + c)
         return x - self._by_row @ (self._left * y), y

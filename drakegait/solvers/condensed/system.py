@@ -1,4 +1,4 @@
-"""The linear system of an interior-point step, condensed to a dense matrix.
+"""The linear system of an interior-point step, condensed to the shared unknowns.
 
     [ W + J_I^T S J_I   J_E^T ] [ dx ]   [ b  ]
     [ J_E               0     ] [ dy ] = [ -c ]
@@ -6,7 +6,8 @@
 W is the Hessian of the Lagrangian plus the barrier's diagonal, S the stiffness of inequality
 rows. Contact forces and residuals are eliminated at their control points
 (`LocalElimination`), which leaves spline coefficients, timing and placement: a few hundred
-unknowns with a matrix K that is positive definite where the step is one of descent.
+unknowns with a matrix K that is positive definite where the step is one of descent, and couples
+neighbouring knots only (`CyclicBandMatrix`).
 Rows of no control point that are equalities (average speed) keep their multipliers (`Border`).
 Equations of motion that may break have reserves, eliminated there, too (`Reserves`).
 """
@@ -14,7 +15,6 @@ Equations of motion that may break have reserves, eliminated there, too (`Reserv
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg
 import scipy.sparse
 
 from drakegait.program.equations_of_motion import EquationsOfMotion
@@ -27,6 +27,7 @@ from drakegait.program.local_rows import DenseRows
 from drakegait.solvers.condensed.assembly import Assembly, add_square, own_blocks
 from drakegait.solvers.condensed.border import Border
 from drakegait.solvers.condensed.convexity import convex_excess
+from drakegait.solvers.condensed.cyclic_band import CyclicBandMatrix
 from drakegait.solvers.condensed.linearisation import Linearisation
 from drakegait.solvers.condensed.local_elimination import LocalElimination
 from drakegait.solvers.condensed.local_variables import LocalVariables, hessian_times
@@ -140,15 +141,20 @@ class CondensedSystem:
             self.give[self._balance] *= self.reserves.share[:, None]
             dense -= self.reserves.reduction
         matrix = self._assembly.matrix(dense, blocks)
-        matrix[np.arange(size), np.arange(size)] += diagonal[:size]
+        matrix.add_diagonal(diagonal[:size])
         # An event may end one phase and begin another.
-        np.add.at(matrix, (timing.curved_rows, timing.curved_columns), bends)
-        np.add.at(matrix, (timing.curved_columns, timing.curved_rows), bends)
+        few, pairs = np.unique(
+            np.stack([timing.curved_rows, timing.curved_columns]), return_inverse=True
+        )
+        one, other = pairs.reshape(2, -1)
+        square = np.zeros((len(few), len(few)))
+        np.add.at(square, (one, other), bends)
+        matrix.add_corner(few, square + square.T)
         rows = jacobian[self._shared_inequalities][:, :size].toarray()
         few = np.flatnonzero(rows.any(axis=0))  # timing and placement
         rows = rows[:, few]
         square = rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
-        matrix[np.ix_(few, few)] += square
+        matrix.add_corner(few, square)
         few = self._shared_equalities
         self._border = Border(jacobian[few][:, :size].toarray(), self.give[few])
         self.matrix = matrix
@@ -184,7 +190,7 @@ class CondensedSystem:
         out *= self._variables.used[:, :, None]
         return out
 
-    def _lack(self) -> np.ndarray:
+    def _lack(self) -> CyclicBandMatrix:
         """What the muscles lack to be convex, as a part of K."""
         if self._convexifying is None:
             walker, curvature = self._program.formulation.walker, self._curvature
@@ -200,23 +206,16 @@ class CondensedSystem:
         Args:
             convexity: share of the muscles' negative curvature that is made up for.
         """
-        self._added = None
-        if convexity > 0.0:
-            self._added = self._lack() if convexity == 1.0 else convexity * self._lack()
-        matrix = self.matrix.copy() if self._added is None else self.matrix + self._added
-        size = len(matrix)
-        matrix[np.arange(size), np.arange(size)] += shift
-        self._border.weigh(matrix, np.abs(np.diag(self.matrix)).mean())
-        try:
-            self._factor = scipy.linalg.cho_factor(
-                matrix, lower=True, overwrite_a=True, check_finite=False
-            )
-        except scipy.linalg.LinAlgError:
-            return False
-        if not np.isfinite(self._factor[0][-1, -1]):
+        self._convexity = convexity
+        plain = convexity == 0.0
+        matrix = self.matrix.copy() if plain else self.matrix.plus(self._lack(), convexity)
+        matrix.add_diagonal(shift)
+        self._border.weigh(matrix, np.abs(self.matrix.diagonal()).mean())
+        factor = matrix.factor()
+        if factor is None:
             return False
         self.shift = shift
-        self._border.factored(self._factor)
+        self._border.factored(factor)
         return True
 
     # Solve -------------------------------------------------------------------------------
@@ -248,8 +247,8 @@ class CondensedSystem:
             out += np.bincount(one, at.bends * x[other], size)
         shared = x[: self.num_shared]
         out[: self.num_shared] += self.shift * shared
-        if self._added is not None:
-            out[: self.num_shared] += self._added @ shared
+        if self._convexity > 0.0:
+            out[: self.num_shared] += self._convexity * (self._lack() @ shared)
         return out + at.jacobian.T @ (self._others * at.stiffness * (at.jacobian @ x))
 
     def _residual(
