@@ -36,7 +36,8 @@ MAY_IMPORT = {
 # Parts that start a solve. All others (gait, check, report, replay and their helpers) read a
 # finished gait and need no solver, only the record of how the solve ended.
 SOLVING = {
-    "__init__", "cli", "commands", "exact", "fidelity", "infeasibility", "paper", "solve", "sweep",
+    "__init__", "cli", "commands", "exact", "fidelity", "infeasibility", "paper", "rounds",
+    "solve", "sweep",
 }  # fmt: skip
 SOLVER_RECORD = "drakegait.solvers.outcome"
 SOLVER_LIBRARIES = ("drakegait.solvers", "pydrake.solvers", "ipyopt")

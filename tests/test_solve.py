@@ -12,6 +12,7 @@ import pytest
 import scipy.optimize
 import scipy.sparse
 
+from drakegait import rounds
 from drakegait.errors import InvalidInput, UnknownName
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
@@ -256,3 +257,39 @@ def test_control_points_are_added_where_the_check_fails():
     for phase in {phase % 4 for phase in failing}:
         assert refined.study.interior_points[phase] > coarse.interior_points[phase]
     assert dataclasses.replace(refined.study, interior_points=coarse.interior_points) == coarse
+
+
+def test_a_walk_with_many_nodes_begins_at_one_with_half_as_many(monkeypatch):
+    monkeypatch.setattr(rounds, "MANY_NODES", 21)
+    gait = solve(STUDY.replace(nodes=21), refine=False, time_limit=60.0)
+    assert gait.converged and gait.study.nodes == 21
+    half = solve(STUDY.replace(nodes=11), refine=False, time_limit=60.0)
+    step = f"11 -> 21 spline nodes, after {half.outcome.iterations} iterations"
+    assert gait.outcome.refinements == (step,)
+    assert gait.outcome.iterations > half.outcome.iterations
+    again = solve(gait.study, guess=half, refine=False, time_limit=60.0)
+    assert again.cost["total"] == pytest.approx(gait.cost["total"], rel=1e-9)
+
+
+def test_many_nodes_are_tried_alone_where_half_as_many_find_no_walk(monkeypatch):
+    monkeypatch.setattr(rounds, "MANY_NODES", 21)
+    study = STUDY.replace(nodes=21)
+    expected = solve(study.replace(nodes=21), guess=None, refine=False, time_limit=60.0)
+    found = rounds.Rounds.first
+
+    def fails(self, guess, start):
+        found(self, guess, start)
+        if self.study.nodes == 11:
+            self.solution = dataclasses.replace(self.solution, status="infeasible")
+
+    monkeypatch.setattr(rounds.Rounds, "first", fails)
+    gait = solve(study, refine=False, time_limit=60.0)
+    assert expected.converged and gait.converged
+    assert gait.outcome.refinements == ()
+
+
+def test_the_time_limit_ends_a_walk_with_many_nodes_during_the_first_half(monkeypatch):
+    monkeypatch.setattr(rounds, "MANY_NODES", 21)
+    stopped = solve(STUDY.replace(nodes=21), refine=False, time_limit=0.3)
+    assert stopped.outcome.status == "time_limit"
+    assert stopped.study.nodes == 21

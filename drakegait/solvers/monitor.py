@@ -19,7 +19,7 @@ class Progress:
     """State of a solve, for one line on the screen.
 
     Attributes:
-        round: 1 for the first solve, more after added control points or moved events.
+        round: 1 for the first solve, more with more nodes or control points, or moved events.
         iteration: of this round.
         cost: f of eq. (13).
         violation: worst violation in units of the row's tolerance or size.

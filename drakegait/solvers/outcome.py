@@ -53,7 +53,7 @@ class Outcome:
         num_variables, num_constraints, jacobian_nonzeros: size of the program.
         worst: rows that hold least, in gait terms; empty if all hold.
         advice: what to try next; empty if converged.
-        refinements: one sentence for each round of added control points.
+        refinements: one sentence for each round of more nodes or control points.
         starts: how each of several starts ended, this one included; empty if there was one.
     """
 
