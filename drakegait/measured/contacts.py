@@ -14,6 +14,7 @@ from drakegait.measured.notes import Notes
 from drakegait.measured.posture import Posture
 
 _LONGEST_STANCE = 1.45  # of the stance that the motion shows: more is two feet on one plate
+_OVERLAP = 0.3  # of two stances that are one and the same, at least
 _NEAR = 0.35  # [m] a centre of pressure farther from both feet belongs to other axes
 
 
@@ -42,15 +43,15 @@ def find_contacts(
 
     Every stretch of force is given to the foot that stands there: the one nearest to the centre of
     pressure; where there is none, or it fits neither foot, the one whose stance, by the motion,
-    overlaps most. What the file says comes last.
+    overlaps most. What the file says comes last; but of a stance of which the motion shows no
+    start or the forces no end, it comes before the motion.
 
     Args:
         name: of the file of forces, for messages.
     """
     moving = {side: kinematic_stances(posture, side) for side in "rl"}
     typical = np.median([b - a for stances in moving.values() for a, b in stances] or [0.8])
-    found: list[Contact] = []
-    swapped = {}
+    loaded, swapped = [], {}
     for record in records:
         time = record.series.time
         for start, end in record.contacts():
@@ -63,11 +64,20 @@ def find_contacts(
                     "break: both feet stood on it, and it was not used there."
                 )
                 continue
-            side = _whose(record, start, end, posture, moving, notes, name)
-            if record.side is not None:
+            side = _nearest(record, start, end, posture, notes, name)
+            if side is None:
+                side = _by_time(record, start, end, whole, moving)
+            if side is not None and record.side is not None:
                 swapped.setdefault(record.label, []).append(side != record.side)
-            found.append(Contact(side=side, start=start, end=end, record=record, whole=whole))
+            loaded.append((side, start, end, record, whole))
     _say_swapped(swapped, notes, name)
+    found = [
+        Contact(
+            side=side or _by_name(record, swapped), start=start, end=end, record=record,
+            whole=whole,
+        )
+        for side, start, end, record, whole in loaded
+    ]  # fmt: skip
     if not found:
         raise BadFile(name, "has no contact of one foot in the time of the motion "
                       f"({posture.time[0]:.2f} to {posture.time[-1]:.2f} s).")  # fmt: skip
@@ -95,8 +105,10 @@ def kinematic_stances(posture: Posture, side: str) -> list[tuple[float, float]]:
     return stances
 
 
-def _whose(record, start, end, posture, moving, notes: Notes, name: str) -> str:
-    """The foot on the plate."""
+def _nearest(
+    record: ForceRecord, start: float, end: float, posture: Posture, notes: Notes, name: str
+) -> str | None:
+    """The foot near the centres of pressure, None if they do not tell."""
     margin = 0.2 * (end - start)
     inside = (record.series.time > start + margin) & (record.series.time < end - margin)
     if record.pressure is not None and all(posture.place[:2]) and inside.any():
@@ -113,10 +125,29 @@ def _whose(record, start, end, posture, moving, notes: Notes, name: str) -> str:
                     "they are given in other axes than the motion; the feet were told apart by "
                     "time."
                 )
+    return None
+
+
+def _by_time(
+    record: ForceRecord,
+    start: float,
+    end: float,
+    whole: bool,
+    moving: dict[str, list[tuple[float, float]]],
+) -> str | None:
+    """The foot whose stance, by the motion, overlaps most; None to go by the file."""
     overlap = [_overlap(moving[side], start, end) for side in "rl"]
-    if abs(overlap[0] - overlap[1]) < 0.1 and record.side is not None:
-        return record.side
+    clear = whole and max(overlap) >= _OVERLAP and abs(overlap[0] - overlap[1]) >= 0.1
+    if record.side is not None and not clear:
+        return None
     return "rl"[int(np.argmax(overlap))]
+
+
+def _by_name(record: ForceRecord, swapped: dict[str, list[bool]]) -> str:
+    """The foot that the file names, or the other if its whole stances were the other's."""
+    if np.mean(swapped.get(record.label, [False])) > 0.5:
+        return "l" if record.side == "r" else "r"
+    return record.side
 
 
 def _distances(posture: Posture, time: np.ndarray, place: np.ndarray) -> np.ndarray:
@@ -164,7 +195,7 @@ def _unloaded(found: list[Contact], moving, notes: Notes) -> list[Contact]:
     for side in "rl":
         loaded = [(c.start, c.end) for c in found if c.side == side]
         for a, b in moving[side]:
-            if _overlap(loaded, a, b) < 0.3:
+            if _overlap(loaded, a, b) < _OVERLAP:
                 added.append(Contact(side=side, start=a + shift[0], end=b + shift[1], record=None,
                                      whole=True))  # fmt: skip
     return added

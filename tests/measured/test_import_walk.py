@@ -145,6 +145,19 @@ def test_without_centre_of_pressure_time_tells_the_feet(tmp_path):
     close(take((motion, forces)), lab.reference)
 
 
+@pytest.mark.parametrize("swapped", [False, True])
+@pytest.mark.parametrize("begin", [-0.3, 0.4, 0.55])
+def test_a_stance_that_is_cut_off_is_not_taken_for_the_other_foots(tmp_path, begin, swapped):
+    heads = ("ground_force_r_", "ground_force_l_")
+    lab = Lab(begin=begin, heads=heads[::-1] if swapped else heads)
+    motion, forces = lab.write(tmp_path)
+    write_mot(forces, {k: v for k, v in lab.forces().items() if not k[:-1].endswith("_p")})
+    walk = take((motion, forces))
+    assert not said(walk, "other foot at times")
+    assert said(walk, "swapped") == swapped
+    close(walk, lab.reference)
+
+
 def test_two_plates_of_an_overground_walk(tmp_path):
     """One contact per foot: the second right heel strike is on the bare floor."""
     lab = Lab(strides=2.6)
