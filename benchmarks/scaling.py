@@ -1,8 +1,9 @@
 """How time and memory grow with spline nodes and with control points.
 
 Every case is a process of its own, from the start of Python to the answer, without added control
-points; from many nodes on with the walk with half as many before it. Two series for each model: nodes from 18 to 70, whose control points grow along as they do
-by default, and control points at fixed nodes. A power law is fitted to each: the exponent is the
+points; with many nodes the walk with half as many, at which it begins, is in it. Two series for
+each model: nodes from 18 to 70, whose control points grow along as they do by default, and control
+points at fixed nodes. A power law is fitted to each: the exponent is the
 slope over the logarithms, 2 where twice as many nodes take four times as long.
 
     python benchmarks/scaling.py                                   # both models, seven minutes
