@@ -449,8 +449,8 @@ def test_walk_continues_from_a_gait_and_draws(walked, tmp_path, capsys):
     assert names == ["figures", "gait.nc", "replay.html", "summary.json"]
     assert "figures/, replay.html" in out
     again = Gait.load(tmp_path / "gait.nc")
-    # Warm, it starts beside its end: within a small part of the cost of the first solve.
-    assert again.cost["total"] == pytest.approx(Gait.load(guess / "gait.nc").cost["total"], rel=0.1)
+    # Warm, it starts beside an optimum, and ends there or in a better one.
+    assert again.cost["total"] < 1.02 * Gait.load(guess / "gait.nc").cost["total"]
 
 
 @pytest.mark.solve

@@ -12,7 +12,8 @@ import pytest
 
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
-from drakegait.solve import _solver, solve
+from drakegait.solve import solve
+from drakegait.solvers.by_name import solver_of
 from drakegait.solvers.monitor import Monitor
 from drakegait.solvers.options import SOLVERS, SolverOptions
 from drakegait.solvers.solution import Solution
@@ -28,7 +29,7 @@ def solved(program: GaitProgram, x: np.ndarray, solver: str, warm: bool, **optio
     with Monitor(300.0, None) as monitor:
         monitor.begin(program)
         chosen = SolverOptions(solver=solver, cost_change=0.0, **options)
-        return _solver(solver)(program, x, chosen, monitor, warm)
+        return solver_of(solver)(program, x, chosen, monitor, warm)
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,8 @@ from drakegait.solvers.solution import Solution
 _COMPLEMENTARITY = 0.01  # tolerance, of that on optimality
 _LAST_BARRIER = 0.09  # of the tolerance on complementarity
 _NEAR_BOUND = 0.9  # of the reach of an event
+_MANY = 150  # iterations after bounds moved that end a run: the optimum has become a far one
+FAR = "events went far"
 
 
 def last_barrier(options: SolverOptions) -> float:
@@ -41,7 +43,7 @@ def iterate(
     elastic = isinstance(method.program, ElasticProgram)
     monitor.step(method.x, 0)
     settled, stalled = Settled(options), Stalled()
-    iterations = 0
+    iterations, since_moved = 0, np.inf  # iterations since bounds moved along
     while True:
         errors = method.errors(0.0)
         if (
@@ -66,22 +68,26 @@ def iterate(
             method.lower_barrier()
         if stalled.reached and not elastic:
             return iterations, "", "laws remain broken"
+        if since_moved == _MANY:
+            return iterations, "", FAR
         if not method.step():
             return iterations, "", "no acceptable step"
         iterations += 1
         monitor.step(method.x, iterations)
         if method.at_last_barrier and not elastic:
-            _recentre(method, monitor)
+            since_moved = 0 if _recentred(method, monitor) else since_moved + 1
         settled.after(method.cost, method.violation, method.barrier)
         stalled.after(method.violation, method.barrier)
 
 
-def _recentre(method: InteriorPoint, monitor: Monitor) -> None:
-    """Move the bounds of events along where one has come near."""
+def _recentred(method: InteriorPoint, monitor: Monitor) -> bool:
+    """Move the bounds of events along where one has come near; whether they moved."""
     moved = recentred(method.program, method.x, _NEAR_BOUND)
-    if moved is not None:
-        method.move_bounds(moved, CondensedSystem(moved, LagrangianHessian(moved)))
-        monitor.go_on(moved, method.x)
+    if moved is None:
+        return False
+    method.move_bounds(moved, CondensedSystem(moved, LagrangianHessian(moved)))
+    monitor.go_on(moved, method.x)
+    return True
 
 
 def solution_of(

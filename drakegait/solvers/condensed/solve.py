@@ -18,7 +18,7 @@ from drakegait.program.gait_program import GaitProgram
 from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.solvers.condensed.interior_point import InteriorPoint
 from drakegait.solvers.condensed.iterate import Multipliers
-from drakegait.solvers.condensed.iterate_to_end import iterate, last_barrier, solution_of
+from drakegait.solvers.condensed.iterate_to_end import FAR, iterate, last_barrier, solution_of
 from drakegait.solvers.condensed.solve_elastic import solve_least
 from drakegait.solvers.condensed.supported import why_not
 from drakegait.solvers.condensed.system import CondensedSystem
@@ -31,6 +31,7 @@ FIRST_BARRIER, WARM_BARRIER = 1e-3, 1e-4
 # which muscles will be silent, and what stands at a bound is slow to leave it. A warm start keeps
 # to the width of its barrier: with a small one it comes from the optimum and would be thrown off.
 _PUSH, _WARM_PUSH = 0.2, 1e-2
+_MOST_RESTARTS = 3
 
 
 def solve_condensed(
@@ -54,6 +55,16 @@ def solve_condensed(
     first = options.barrier_start or first
     push = min(push, first**0.5) if warm else push
     found, method = _solved(program, x, options, monitor, first, push, known)
+    for _ in range(_MOST_RESTARTS):
+        if found.status or found.detail != FAR:
+            break
+        # With the last barrier parameter steps are short, and the optimum has moved far away.
+        spent = found.iterations
+        monitor.begin(method.program)
+        found, method = _solved(
+            method.program, method.x, options, monitor, WARM_BARRIER, _WARM_PUSH, None
+        )
+        found = replace(found, iterations=spent + found.iterations)
     if found.status:
         return found
     program = method.program
