@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from drakegait.program.elastic import ElasticProgram
 from drakegait.program.lagrangian_hessian import LagrangianHessian
@@ -27,6 +28,7 @@ def last_barrier(options: SolverOptions) -> float:
     return _LAST_BARRIER * (_COMPLEMENTARITY * options.optimality)
 
 
+@threadpool_limits.wrap(limits=1, user_api="blas")  # its blocks are small: threads would wait
 def iterate(
     method: InteriorPoint, options: SolverOptions, monitor: Monitor
 ) -> tuple[int, str, str]:
