@@ -3,8 +3,8 @@
 Every case is a process of its own, from the start of Python to the answer, without added control
 points; with many nodes the walk with half as many, at which it begins, is in it. Two series for
 each model: nodes from 18 to 70, whose control points grow along as they do by default, and control
-points at fixed nodes. A power law is fitted to each: the exponent is the
-slope over the logarithms, 2 where twice as many nodes take four times as long.
+points at fixed nodes. A power law is fitted to each: the exponent is the slope over the logarithms,
+2 where twice as many nodes take four times as long.
 
     python benchmarks/scaling.py                                   # both models, seven minutes
     python benchmarks/scaling.py --models planar --nodes 18 24     # some cases

@@ -28,7 +28,7 @@ from drakegait.transcription.design_vector import DesignValues
 
 _MAX_RECENTRINGS = 3
 _AT_BOUND = 0.98  # of the reach of an event
-# From so many nodes on it is quicker to begin with half as many (measured: benchmarks/README.md).
+# From so many nodes on it is quicker to begin with half as many (docs/formulation.md 12.4).
 MANY_NODES = 48
 
 

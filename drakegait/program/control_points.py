@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.program.formulation import Formulation
+from drakegait.transcription.splines import SUPPORT
 from drakegait.walker import feet
 
 
@@ -172,8 +173,7 @@ def event_bounds(formulation: Formulation) -> tuple[np.ndarray, np.ndarray]:
 def _windows(formulation: Formulation) -> tuple[np.ndarray, int]:
     low, high = event_bounds(formulation)
     splines = formulation.splines
-    # Interior window of a quintic: 6 coefficients from the knot interval of tau.
     _, first = splines.basis(formulation.schedule.instants(low))
     _, last = splines.basis(formulation.schedule.instants(high))
-    width = min(int((last - first).max()) + 6, splines.num_intervals)
+    width = min(int((last - first).max()) + SUPPORT, splines.num_intervals)
     return first, width

@@ -14,7 +14,7 @@ import numpy as np
 
 from drakegait.errors import InvalidInput
 
-_SUPPORT = 6  # a quintic bell covers six intervals
+SUPPORT = 6  # a quintic bell covers six intervals; so many coefficients meet at an instant
 _MAX_DERIVATIVE = 4  # the fifth derivative jumps at the nodes
 
 
@@ -24,11 +24,11 @@ def _bell_polynomials() -> np.ndarray:
     With B(x) = 1/5! sum_m (-1)^m C(6, m) (x + 3 - m)_+^5, entry [p, i] is the coefficient of t^p
     in B(t + 2 - i), 0 <= t < 1: the weight of the i-th of the six coefficients around t.
     """
-    pieces = np.zeros((_SUPPORT, _SUPPORT))
-    for i in range(_SUPPORT):
-        for m in range(_SUPPORT - i):
-            sign_and_count = (-1) ** m * math.comb(_SUPPORT, m)
-            for p in range(_SUPPORT):
+    pieces = np.zeros((SUPPORT, SUPPORT))
+    for i in range(SUPPORT):
+        for m in range(SUPPORT - i):
+            sign_and_count = (-1) ** m * math.comb(SUPPORT, m)
+            for p in range(SUPPORT):
                 pieces[p, i] += sign_and_count * math.comb(5, p) * (5 - i - m) ** (5 - p)
     return pieces / math.factorial(5)
 
@@ -87,9 +87,9 @@ class PeriodicQuintic:
             raise InvalidInput("derivative", derivative, f"0 to {_MAX_DERIVATIVE}")
         position = np.asarray(tau, dtype=float) * self.num_intervals
         interval = np.floor(position)
-        powers = np.vander((position - interval).ravel(), _SUPPORT - derivative, increasing=True)
+        powers = np.vander((position - interval).ravel(), SUPPORT - derivative, increasing=True)
         weights = powers @ (_PIECES[derivative] * float(self.num_intervals) ** derivative)
-        return weights.reshape(position.shape + (_SUPPORT,)), interval.astype(int) - 2
+        return weights.reshape(position.shape + (SUPPORT,)), interval.astype(int) - 2
 
     def windowed_basis(
         self, tau: np.ndarray, first: np.ndarray, width: int, derivative: int = 0
@@ -113,7 +113,7 @@ class PeriodicQuintic:
             raise InvalidInput("width", width, f"1 to {self.num_intervals} coefficients")
         tau, first = np.broadcast_arrays(np.asarray(tau, dtype=float), np.asarray(first, dtype=int))
         weights, start = self.basis(tau, derivative)
-        place = (start - first)[..., None] + np.arange(_SUPPORT)
+        place = (start - first)[..., None] + np.arange(SUPPORT)
         window = np.zeros(tau.shape + (self.num_intervals,))
         np.put_along_axis(window, place % self.num_intervals, weights, axis=-1)
         return window[..., :width]

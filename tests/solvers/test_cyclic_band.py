@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from drakegait.solvers.condensed.cyclic_band import SUPPORT, CyclicBand, CyclicBandMatrix
+from drakegait.solvers.condensed.cyclic_band import CyclicBand, CyclicBandMatrix
+from drakegait.transcription.splines import SUPPORT
 
 FUNCTIONS, LATE = 3, 4
 

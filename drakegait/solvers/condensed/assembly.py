@@ -13,7 +13,8 @@ import scipy.sparse
 from drakegait.program.excitation import MuscleChain
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.hessian_blocks import NUM_LATE, HessianBlocks
-from drakegait.solvers.condensed.cyclic_band import SUPPORT, CyclicBand, CyclicBandMatrix
+from drakegait.solvers.condensed.cyclic_band import CyclicBand, CyclicBandMatrix
+from drakegait.transcription.splines import SUPPORT
 
 
 class Assembly:

@@ -18,14 +18,25 @@ of knots, where those of a dense matrix grow with its third and second power.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg
 from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpotrf, dtrtrs
 
-SUPPORT = 6  # knots that a basis function of a quintic spans: coefficients five apart still meet
+from drakegait.transcription.splines import SUPPORT
+
 _LOWER = {"lower": 1}
+
+
+class Group(NamedTuple):
+    """The blocks of a group's columns: D, and below it E and F, which are stored together."""
+
+    own: np.ndarray
+    below: np.ndarray
+    following: np.ndarray
+    corner: np.ndarray
 
 
 class CyclicBand:
@@ -98,19 +109,20 @@ class CyclicBand:
             out[inside] = beside + (beyond * count + within)[inside]
         return out
 
-    def blocks(self, stored: np.ndarray) -> tuple[list[tuple[np.ndarray, np.ndarray]], np.ndarray]:
-        """Views (D, [E; F]) of every group, and C."""
-        border, pairs = self.num_corner, []
+    def blocks(self, stored: np.ndarray) -> tuple[list[Group], np.ndarray]:
+        """Views of every group's blocks, and C."""
+        border, groups = self.num_corner, []
         for k, (own, beside, following) in enumerate(self._places):
             count = self._starts[k + 1] - self._starts[k]
-            below = count * (following + border)
-            pairs.append(
-                (
+            rows = following + border
+            below = stored[beside : beside + rows * count].reshape(rows, count)
+            groups.append(
+                Group(
                     stored[own:beside].reshape(count, count),
-                    stored[beside : beside + below].reshape(following + border, count),
+                    below, below[:following], below[following:],
                 )
-            )
-        return pairs, stored[self._corner :].reshape(border, border)
+            )  # fmt: skip
+        return groups, stored[self._corner :].reshape(border, border)
 
     def parts(self, x: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
         """Views of the groups' parts and the corner's in ordered rows."""
@@ -128,12 +140,12 @@ class CyclicBandMatrix:
     @classmethod
     def halved(cls, band: CyclicBand, stored: np.ndarray) -> CyclicBandMatrix:
         """A matrix whose D and C are to be added to their transposes."""
-        pairs, corner = band.blocks(stored)
-        for block in (*(own for own, _ in pairs), corner):
+        groups, corner = band.blocks(stored)
+        for block in (*(group.own for group in groups), corner):
             block += block.T.copy()
         return cls(band, stored)
 
-    def plus(self, other: CyclicBandMatrix, share: float = 1.0) -> CyclicBandMatrix:
+    def plus(self, other: CyclicBandMatrix, share: float) -> CyclicBandMatrix:
         """self + share * other, with arrays of its own."""
         return CyclicBandMatrix(self.band, self.stored + share * other.stored)
 
@@ -143,10 +155,10 @@ class CyclicBandMatrix:
 
     def diagonal(self) -> np.ndarray:
         """The diagonal (size,)."""
-        pairs, corner = self.band.blocks(self.stored)
+        groups, corner = self.band.blocks(self.stored)
         out = np.empty(self.band.size)
         out[self.band.order] = np.concatenate(
-            [*(np.diagonal(own) for own, _ in pairs), np.diagonal(corner)]
+            [*(np.diagonal(group.own) for group in groups), np.diagonal(corner)]
         )
         return out
 
@@ -154,9 +166,9 @@ class CyclicBandMatrix:
         """Add to the diagonal."""
         ordered = np.broadcast_to(values, self.band.size)[self.band.order]
         parts, last = self.band.parts(ordered)
-        pairs, corner = self.band.blocks(self.stored)
-        for (own, _), part in zip(pairs, parts, strict=True):
-            own.reshape(-1)[:: len(own) + 1] += part
+        groups, corner = self.band.blocks(self.stored)
+        for group, part in zip(groups, parts, strict=True):
+            group.own.reshape(-1)[:: len(part) + 1] += part
         corner.reshape(-1)[:: len(corner) + 1] += last
 
     def add_corner(self, unknowns: np.ndarray, values: np.ndarray) -> None:
@@ -164,29 +176,35 @@ class CyclicBandMatrix:
         rows = self.band.in_corner(unknowns)
         self.band.blocks(self.stored)[1][np.ix_(rows, rows)] += values
 
+    def add_pairs(self, rows: np.ndarray, columns: np.ndarray, values: np.ndarray) -> None:
+        """Add `values` (k,) to k pairs of unknowns of the corner, and to the pairs turned round."""
+        corner = self.band.blocks(self.stored)[1]
+        rows, columns = self.band.in_corner(rows), self.band.in_corner(columns)
+        np.add.at(corner, (rows, columns), values)
+        np.add.at(corner, (columns, rows), values)
+
     def add_rows(self, unknowns: np.ndarray, rows: np.ndarray) -> None:
         """Add `rows` (k, size) to the rows of unknowns of the corner, and to the columns."""
-        pairs, corner = self.band.blocks(self.stored)
-        which, ordered = self.band.in_corner(unknowns), rows[:, self.band.order]
-        bounds = np.cumsum([0, *(own.shape[0] for own, _ in pairs)])
-        for k, (_, below) in enumerate(pairs):
-            below[which + len(below) - len(corner)] += ordered[:, bounds[k] : bounds[k + 1]]
-        corner[which] += ordered[:, bounds[-1] :]
-        corner[:, which] += ordered[:, bounds[-1] :].T
+        groups, corner = self.band.blocks(self.stored)
+        which = self.band.in_corner(unknowns)
+        parts, last = self.band.parts(rows[:, self.band.order].T)
+        for group, part in zip(groups, parts, strict=True):
+            group.corner[which] += part.T
+        corner[which] += last.T
+        corner[:, which] += last
 
     def __matmul__(self, x: np.ndarray) -> np.ndarray:
         ordered = x[self.band.order]
         product = np.zeros_like(ordered)
-        pairs, corner = self.band.blocks(self.stored)
+        groups, corner = self.band.blocks(self.stored)
         (parts, last), (out, out_last) = self.band.parts(ordered), self.band.parts(product)
         out_last += corner @ last
-        for k, (own, below) in enumerate(pairs):
-            following = len(below) - len(corner)
-            out[k] += own @ parts[k] + below[following:].T @ last
-            out_last += below[following:] @ parts[k]
-            if following:
-                out[k] += below[:following].T @ parts[k + 1]
-                out[k + 1] += below[:following] @ parts[k]
+        for k, group in enumerate(groups):
+            out[k] += group.own @ parts[k] + group.corner.T @ last
+            out_last += group.corner @ parts[k]
+            if len(group.following):
+                out[k] += group.following.T @ parts[k + 1]
+                out[k + 1] += group.following @ parts[k]
         result = np.empty_like(product)
         result[self.band.order] = product
         return result
@@ -197,21 +215,18 @@ class CyclicBandMatrix:
 
     def factor(self) -> CyclicBandFactor | None:
         """The Cholesky factor, in the place of the matrix; None if it is not positive definite."""
-        pairs, corner = self.band.blocks(self.stored)
-        for k, (own, below) in enumerate(pairs):
+        groups, corner = self.band.blocks(self.stored)
+        for k, group in enumerate(groups):
             # A C-ordered array is its transpose in LAPACK's order.
-            _, info = dpotrf(own.T, **_LOWER, clean=0, overwrite_a=1)
+            _, info = dpotrf(group.own.T, **_LOWER, clean=0, overwrite_a=1)
             if info:
                 return None
-            dtrsm(1.0, own.T, below.T, side=0, **_LOWER, overwrite_b=1)
-            following = len(below) - len(corner)
-            beyond = below[following:]
-            corner -= beyond @ beyond.T
-            if following:
-                beside = below[:following]
-                next_own, next_below = pairs[k + 1]
-                next_own -= beside @ beside.T
-                next_below[len(next_below) - len(corner) :] -= beyond @ beside.T
+            dtrsm(1.0, group.own.T, group.below.T, side=0, **_LOWER, overwrite_b=1)
+            corner -= group.corner @ group.corner.T
+            if len(group.following):
+                after = groups[k + 1]
+                after.own[...] -= group.following @ group.following.T
+                after.corner[...] -= group.corner @ group.following.T
         _, info = dpotrf(corner.T, **_LOWER, clean=0, overwrite_a=1)
         if info or not np.isfinite(corner[-1, -1]):
             return None
@@ -228,22 +243,19 @@ class CyclicBandFactor:
     def solve(self, right: np.ndarray) -> np.ndarray:
         """K^-1 times `right` (size,) or (size, k)."""
         x = np.array(right[self.band.order], order="F")
-        pairs, corner = self.band.blocks(self.stored)
+        groups, corner = self.band.blocks(self.stored)
         parts, last = self.band.parts(x)
-        for k, (own, below) in enumerate(pairs):
-            parts[k][...] = _triangular(own, parts[k])
-            following = len(below) - len(corner)
-            last -= below[following:] @ parts[k]
-            if following:
-                parts[k + 1] -= below[:following] @ parts[k]
+        for k, group in enumerate(groups):
+            parts[k][...] = _triangular(group.own, parts[k])
+            last -= group.corner @ parts[k]
+            if len(group.following):
+                parts[k + 1] -= group.following @ parts[k]
         last[...] = scipy.linalg.cho_solve((corner.T, True), last, check_finite=False)
-        for k in reversed(range(len(pairs))):
-            own, below = pairs[k]
-            following = len(below) - len(corner)
-            parts[k] -= below[following:].T @ last
-            if following:
-                parts[k] -= below[:following].T @ parts[k + 1]
-            parts[k][...] = _triangular(own, parts[k], transposed=1)
+        for k, group in reversed([*enumerate(groups)]):
+            parts[k] -= group.corner.T @ last
+            if len(group.following):
+                parts[k] -= group.following.T @ parts[k + 1]
+            parts[k][...] = _triangular(group.own, parts[k], transposed=1)
         out = np.empty_like(x)
         out[self.band.order] = x
         return out

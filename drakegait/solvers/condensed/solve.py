@@ -56,7 +56,7 @@ def solve_condensed(
     push = min(push, first**0.5) if warm else push
     found, method = _solved(program, x, options, monitor, first, push, known)
     for _ in range(_MOST_RESTARTS):
-        if found.status or found.detail != FAR:
+        if found.detail != FAR:
             break
         # With the last barrier parameter steps are short, and the optimum has moved far away.
         spent = found.iterations

@@ -143,13 +143,7 @@ class CondensedSystem:
         matrix = self._assembly.matrix(dense, blocks)
         matrix.add_diagonal(diagonal[:size])
         # An event may end one phase and begin another.
-        few, pairs = np.unique(
-            np.stack([timing.curved_rows, timing.curved_columns]), return_inverse=True
-        )
-        one, other = pairs.reshape(2, -1)
-        square = np.zeros((len(few), len(few)))
-        np.add.at(square, (one, other), bends)
-        matrix.add_corner(few, square + square.T)
+        matrix.add_pairs(timing.curved_rows, timing.curved_columns, bends)
         rows = jacobian[self._shared_inequalities][:, :size].toarray()
         few = np.flatnonzero(rows.any(axis=0))  # timing and placement
         rows = rows[:, few]
