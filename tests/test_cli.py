@@ -414,7 +414,9 @@ def test_the_summary_is_valid_json_and_replaced_at_once(tmp_path, monkeypatch):
 @pytest.fixture(scope="module")
 def walked(tmp_path_factory) -> tuple[subprocess.CompletedProcess, Path]:
     out = tmp_path_factory.mktemp("walk") / "new" / "folder"
-    running = process("walk", *TINY, "--out", out, "--no-pictures", "--set", "optimality=0.01")
+    running = process(
+        "walk", *TINY, "--out", out, "--no-pictures", "--no-refine", "--set", "optimality=0.01",
+    )  # fmt: skip
     printed, err = running.communicate(timeout=300)
     return subprocess.CompletedProcess([], running.returncode, printed, err), out
 
@@ -449,8 +451,9 @@ def test_walk_continues_from_a_gait_and_draws(walked, tmp_path, capsys):
     assert names == ["figures", "gait.nc", "replay.html", "summary.json"]
     assert "figures/, replay.html" in out
     again = Gait.load(tmp_path / "gait.nc")
-    # Warm, it starts beside an optimum, and ends there or in a better one.
-    assert again.cost["total"] < 1.02 * Gait.load(guess / "gait.nc").cost["total"]
+    # Warm, it starts beside its end: within a small part of the cost of the first solve.
+    first = Gait.load(guess / "gait.nc")
+    assert again.cost["total"] == pytest.approx(first.cost["total"], rel=0.01)
 
 
 @pytest.mark.solve

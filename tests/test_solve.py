@@ -17,6 +17,8 @@ from drakegait.errors import InvalidInput, UnknownName
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
 from drakegait.solve import solve
+from drakegait.solvers.condensed import iterate_to_end
+from drakegait.solvers.monitor import Progress
 from drakegait.solvers.options import SOLVERS, SolverOptions
 from drakegait.study import GaitStudy
 
@@ -221,21 +223,30 @@ def test_choices_and_options_add_up():
 # Refinement ------------------------------------------------------------------------------------
 
 
-def test_events_go_further_than_their_first_bounds_let_them():
-    """A reference that says too early a heel off: the bounds move along."""
+def early_heel_off() -> GaitStudy:
+    """A reference that says too early a heel off: its events have to go far."""
     walk = STUDY.reference_walk
-    shift = np.tile([0.0, 0.0, -0.05, 0.05], 2)
-    early = dataclasses.replace(
-        walk, phase_fractions=tuple(np.asarray(walk.phase_fractions) + shift)
-    )
-    slow = STUDY.replace(reference=early)
-    found = solve(slow, refine=False, time_limit=60.0)
+    fractions = np.asarray(walk.phase_fractions) + np.tile([0.0, 0.0, -0.05, 0.05], 2)
+    return STUDY.replace(reference=dataclasses.replace(walk, phase_fractions=tuple(fractions)))
+
+
+def test_events_go_further_than_their_first_bounds_let_them():
+    study = early_heel_off()
+    found = solve(study, refine=False, time_limit=60.0)
     assert found.converged
-    formulation = slow.formulation()
+    formulation = study.formulation()
     moved = np.abs(found.values.events - np.array(formulation.event_centres))
     assert moved.max() > formulation.event_reach
     last = GaitProgram(found.study.formulation(found.values.events))
     assert last.violations(last.design.pack(found.values)).max() < 2e-3
+
+
+def test_a_solve_whose_events_went_far_starts_again_from_there(monkeypatch):
+    monkeypatch.setattr(iterate_to_end, "_MANY", 10)  # no walk is found in so few iterations
+    told: list[Progress] = []
+    found = solve(early_heel_off(), refine=False, time_limit=60.0, report=told.append)
+    assert found.converged
+    assert (told[0].round, told[-1].round) == (1, 2)
 
 
 def test_control_points_are_added_where_the_check_fails():
@@ -258,12 +269,22 @@ def test_control_points_are_added_where_the_check_fails():
 
 def test_a_walk_with_many_nodes_begins_at_one_with_half_as_many(gait, monkeypatch):
     monkeypatch.setattr(rounds, "MANY_NODES", 21)
-    study, options = STUDY.replace(nodes=21), {"refine": False, "max_iterations": 100}
-    found = solve(study, **options)
-    half = gait.outcome.iterations
+    real = rounds.solver_of
+
+    def short_with_many(name):
+        def run(program, x, options, *more, **known):
+            few = program.formulation.splines.num_intervals == STUDY.nodes - 1
+            chosen = options if few else options.replace(max_iterations=2)
+            return real(name)(program, x, chosen, *more, **known)
+
+        return run
+
+    monkeypatch.setattr(rounds, "solver_of", short_with_many)
+    study, half = STUDY.replace(nodes=21), gait.outcome.iterations
+    found = solve(study, refine=False)
     assert found.study.nodes == 21
     assert found.outcome.refinements == (f"11 -> 21 spline nodes, after {half} iterations",)
-    again = solve(study, guess=gait, **options)
+    again = solve(study, guess=gait, refine=False)
     assert found.outcome.iterations == half + again.outcome.iterations
     assert found.cost["total"] == pytest.approx(again.cost["total"], rel=1e-9)
 
