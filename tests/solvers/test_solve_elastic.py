@@ -100,11 +100,12 @@ def test_a_solve_that_got_stuck_goes_on_from_where_all_laws_hold(
 ) -> None:
     program, x = program_of(SMALL)
     assert solve_least(program, x, Monitor(120.0)).status == ""
-    stuck = Stalled.after
+    stuck, times = Stalled.after, []
 
     def at_once(self: Stalled, violation: float, barrier: float) -> None:
         stuck(self, violation, barrier)
-        self.reached = violation > 1.0
+        self.reached = violation > 1.0 and not times
+        times.extend([1] * self.reached)
 
     monkeypatch.setattr(Stalled, "after", at_once)
     monkeypatch.setattr(solve_module, "_by_ipopt", None)  # nothing is left to it
@@ -135,3 +136,7 @@ def test_stalled_means_that_violations_stay() -> None:
     for _ in range(60):
         small.after(0.05, 1e-4)
     assert not small.reached
+    bent = Stalled()
+    for iteration in range(60):  # rows that were nearly held, and a long step
+        bent.after(0.15 if iteration == 59 else 0.02, 1e-4)
+    assert not bent.reached

@@ -24,5 +24,6 @@ class Stalled:
             self._violations.clear()
         self._barrier = barrier
         self._violations = [*self._violations[-_LENGTH:], violation]
-        full = len(self._violations) > _LENGTH and violation > _NEARLY_HELD
+        # Where rows were nearly held on the way, a long step has bent them: no sign of conflict.
+        full = len(self._violations) > _LENGTH and min(self._violations) > _NEARLY_HELD
         self.reached = full and violation > _LEFT * self._violations[0]
