@@ -12,6 +12,9 @@ from drakegait.program.gait_program import GaitProgram
 from drakegait.walker import coordinates, feet
 
 _SATURATED = 0.9  # of full excitation or activation
+# An excitation that follows from a spline swings about its limit: it counts where it comes to it
+# within this part of the stride.
+_NEARBY = 0.02
 _LITTLE = 0.5  # of the tolerance: a lack that does not count
 _TURNS = {  # towards + and - in anatomical sense
     "hip_flexion": ("hip flexion", "hip extension"),
@@ -191,9 +194,11 @@ def _of_muscles(
     position = walker.coordinate_names.index(coordinate)
     sense = lack * coordinates.anatomical_signs(walker.skeleton.kind)[position]
     turn = _TURNS[without_side(coordinate)][0 if sense > 0.0 else 1]
-    inputs = program.state(x).muscle_inputs[point]
-    states = walker.muscle_functions.states(inputs)
-    effort = np.maximum(states["excitation"], states["activation"])
+    state = program.state(x)
+    inputs = state.muscle_inputs[point]
+    apart = np.abs((state.tau - state.tau[point] + 0.5) % 1.0 - 0.5)
+    states = walker.muscle_functions.states(state.muscle_inputs[apart <= _NEARBY])
+    effort = np.maximum(states["excitation"], states["activation"]).max(axis=0)
     arms = walker.muscles.moment_arms[:, position]
     pulls = arms * lack > 0.0
     full = np.flatnonzero(pulls & (effort >= _SATURATED))
