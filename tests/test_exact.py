@@ -25,7 +25,7 @@ ONE_OF_EACH = (
     "fibre length soleus", "orthosis both stiffness", "orthosis both mass",
     "tolerances.moment_tolerance", "tolerances.contact_tolerance", "passive.damping_knee",
 )  # fmt: skip
-SHARE = 2e-3  # of a parameter's step
+SHARE = 2e-4  # of a parameter's step: with 2e-3 bounds become active in between
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,7 @@ def test_derivatives_are_what_solving_again_gives(exact, answers, name):
         ends.append((solved.cost["total"], 100.0 * solved.cost["metabolic cost of transport"]))
     cost, energy = ((above - below) / (2.0 * step) for above, below in zip(*ends, strict=True))
     assert answers[name].cost == pytest.approx(cost, rel=3e-3)
-    assert answers[name].energy == pytest.approx(energy, rel=3e-2)
+    assert answers[name].energy == pytest.approx(energy, rel=1e-2)
 
 
 # Refusals and the command ------------------------------------------------------------------------

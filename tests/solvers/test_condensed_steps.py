@@ -110,37 +110,45 @@ class Scales:
         self.tried.append((shift, convexity))
         return shift + 2.0 * convexity > self.lacking
 
+    def least_convexity(self) -> float:
+        return 0.5 * self.lacking
+
 
 def test_nothing_is_added_where_nothing_is_needed() -> None:
     system = Scales(-1.0)
-    assert Regularisation(system).factor(creeping=False)
+    assert Regularisation(system).factor()
     assert system.tried == [(0.0, 0.0)]
 
 
-def test_convexity_comes_before_multiples_of_the_identity() -> None:
+def test_a_few_times_the_least_convexity_is_added() -> None:
+    system = Scales(0.4)  # 0.2 is the least
+    assert Regularisation(system).factor()
+    assert system.tried == [(0.0, 0.0), (0.0, 1.0), (0.0, pytest.approx(0.52))]
+
+
+def test_all_convexity_where_much_is_needed_and_multiples_of_the_identity_beyond() -> None:
     system = Scales(1.0)
-    assert Regularisation(system).factor(creeping=False)
+    assert Regularisation(system).factor()
     assert system.tried == [(0.0, 0.0), (0.0, 1.0)]
     system = Scales(5.0)
-    assert Regularisation(system).factor(creeping=False)
+    assert Regularisation(system).factor()
     assert system.tried[:2] == [(0.0, 0.0), (0.0, 1.0)]
     shift, convexity = system.tried[-1]
     assert convexity == 1.0
     assert 3.0 < shift <= 3.0 * 100.0
 
 
-def test_a_creeping_solve_takes_little_more_convexity_than_it_must() -> None:
-    system = Scales(0.6)  # 0.3 is the least
-    assert Regularisation(system).factor(creeping=True)
-    shift, convexity = system.tried[-1]
-    assert shift == 0.0
-    assert 0.3 < convexity < 0.6
+def test_a_wrong_estimate_of_the_least_convexity_costs_a_factor() -> None:
+    system = Scales(1.0)
+    system.least_convexity = lambda: 0.1
+    assert Regularisation(system).factor()
+    assert system.tried[-1] == (0.0, 1.0)
 
 
 def test_a_failed_search_asks_for_more_until_there_is_no_use() -> None:
     system = Scales(-1.0)
     regularisation = Regularisation(system)
-    assert regularisation.factor(creeping=False)
+    assert regularisation.factor()
     shifts = []
     while regularisation.more():
         shifts.append(system.tried[-1][0])
@@ -204,6 +212,52 @@ def test_corners_narrow_with_the_barrier_and_end_at_their_own_width(program: Gai
     assert widths[0] > 10.0
     assert widths == sorted(widths, reverse=True)
     assert widths[-1] == 1.0
+
+
+def started(program: GaitProgram, barrier: float) -> InteriorPoint:
+    """A solve from the reference after one step; 1e-6 is the last barrier parameter."""
+    system = CondensedSystem(program, LagrangianHessian(program))
+    x = guess_from_reference(program)
+    method = InteriorPoint(program, system, x, barrier, last_barrier=1e-6, push=0.1)
+    assert method.step()
+    return method
+
+
+@pytest.mark.parametrize("barrier", [1e-4, 1e-6])
+def test_at_the_last_barrier_parameter_a_step_that_turns_back_goes_half_way(
+    program: GaitProgram, barrier: float
+) -> None:
+    method = started(program, barrier)
+    back = np.zeros(len(method.w))
+    back[: method.size] = -1e-9 * method._last_step / np.abs(method._last_step).max()
+    assert method._longest(back) == (0.5 if method.at_last_barrier else 1.0)
+    assert method._longest(-back) == 1.0
+
+
+def test_steps_go_beyond_bounds_only_where_they_bend(program: GaitProgram) -> None:
+    for bends in (True, False):
+        system = CondensedSystem(program, LagrangianHessian(program))
+        x = guess_from_reference(program)
+        method = InteriorPoint(program, system, x, 1e-4, 1e-6, push=0.1, bends=bends)
+        low, _ = method.gaps(method.w)
+        k = int(np.flatnonzero(np.isfinite(low))[0])
+        dw = np.zeros(len(low))
+        dw[k] = -2.0 * low[k]
+        assert method._longest(dw) == (1.0 if bends else pytest.approx(0.5, rel=1e-2))
+        left = (method._along(dw, method._longest(dw)) - method.w + low)[k] / low[k]
+        assert left == pytest.approx(0.125 if bends else 0.0, abs=1e-3)
+
+
+def test_a_short_step_does_not_look_like_the_end(program: GaitProgram) -> None:
+    """A barrier problem is left by what a step changes at full length."""
+    method = started(program, 1e-4)
+    length, before = 0.01, method.cost
+    dw = np.random.default_rng(3).normal(size=len(method.w)) * np.minimum(*method.gaps(method.w))
+    dw = np.where(np.isfinite(dw), 0.1 * dw, 0.0)
+    dy = np.zeros(program.num_constraints)
+    method._move(method.w + length * dw, dw, dy, length, Targets.equal(1e-4, len(dw)))
+    assert method.cost != before
+    assert method._last_change == pytest.approx(abs(method.cost - before) / length)
 
 
 @pytest.mark.parametrize("limit", [{"max_iterations": 2}, {"max_iterations": 200}])

@@ -130,7 +130,7 @@ def test_a_border_gives_way_as_far_as_its_compliance(compliance: float) -> None:
     border = Border(rows, give)
     band = CyclicBand(np.zeros((0, 0), dtype=int), 6, np.arange(6))
     weighed = CyclicBandMatrix(band, matrix.ravel().copy())
-    border.weigh(weighed, 2.0)
+    border.weigh(weighed, weighed.copy())
     border.factored(weighed.factor())
     x, y = border.solve(b, c)
     np.testing.assert_allclose(np.concatenate([x, y]), expected, atol=1e-9)

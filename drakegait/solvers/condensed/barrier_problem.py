@@ -14,7 +14,7 @@ from drakegait.program.gait_program import GaitProgram
 from drakegait.solvers.condensed.iterate import Errors, Multipliers, inside
 from drakegait.solvers.condensed.system import CondensedSystem
 
-_KAPPA_EPS, _KAPPA_MU, _THETA_MU = 30.0, 0.2, 1.5  # barrier problem, (7); looser than theirs
+_KAPPA_EPS, _KAPPA_MU = 30.0, 0.1  # barrier problem, (7); looser than theirs
 _LEAST_KNOWN = 0.1  # of mu over the distance to a bound, for multipliers from elsewhere
 _SCALE_MAX = 100.0  # s_max of (5)
 _NARROW = 1e-6  # the barrier parameter at which corners have their own width
@@ -176,13 +176,9 @@ class BarrierProblem:
         cost = self.barrier_cost(w, self.program.cost(w[: self.size]))
         return (theta, cost if np.isfinite(cost) else np.inf), primal
 
-    def lower_barrier(self, factor: float | None = None) -> None:
+    def lower_barrier(self, factor: float = _KAPPA_MU) -> None:
         """Go on to the next barrier problem, (7)."""
-        if factor is None:
-            smaller = min(_KAPPA_MU * self.barrier, self.barrier**_THETA_MU)
-        else:
-            smaller = factor * self.barrier
-        self.barrier = max(self._last_barrier, smaller)
+        self.barrier = max(self._last_barrier, factor * self.barrier)
         if self.smoothing != self.program.smoothing:
             self.program.smoothing = self.smoothing
             self.evaluate()

@@ -89,6 +89,10 @@ class ElasticSystem:
         """Factorise; False if K is not positive definite; see `CondensedSystem`."""
         return self._inner.factor(shift, convexity)
 
+    def least_convexity(self) -> float:
+        """The share of convexity that K needs; see `CondensedSystem`."""
+        return self._inner.least_convexity()
+
     def solve(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """dx and the equalities' dy (at their rows, 0 elsewhere) for right-hand sides b and c.
 

@@ -4,12 +4,14 @@
 
 for a falling sequence of barrier parameters mu; line search with a filter and second-order
 corrections. The algorithm is that of IPOPT (Waechter & Biegler 2006, equation numbers below)
-without a restoration phase (where no step is acceptable the method says so), and with three
+without a restoration phase (where no step is acceptable the method says so), and with these
 additions:
 
 - corners of the energy rate are rounded widely at first and narrow with mu (`smoothing`);
 - what makes K positive definite is looked for in the muscles first (`Regularisation`);
-- steps that a few bounds cut short are corrected (`Targets`).
+- steps bend at bounds instead of ending there (`bent_steps`), and those that a few bounds cut
+  short nevertheless are corrected (`Targets`);
+- a step that turns back goes half way: between two flat sides of a corner steps swing for ever.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ import numpy as np
 
 from drakegait.program.gait_program import GaitProgram
 from drakegait.solvers.condensed.barrier_problem import BarrierProblem
+from drakegait.solvers.condensed.bent_steps import OVERSHOOT, along, bent
 from drakegait.solvers.condensed.centrality import CORRECTIONS, LONG, WORTH, Targets
 from drakegait.solvers.condensed.filter import Filter
 from drakegait.solvers.condensed.iterate import Multipliers, longest_step
@@ -27,15 +30,18 @@ from drakegait.solvers.condensed.system import CondensedSystem
 _TAU = 0.99  # smallest fraction to the boundary (8)
 _KAPPA_SIGMA = 1e10  # (16)
 _CORRECTIONS, _CORRECTED = 4, 0.99  # second-order corrections (section 2.4)
-# Full steps that change the cost by less than this part of itself creep, if there are so many.
-_LITTLE_CHANGE, _FULL, _CREEPING = 1e-3, 0.95, 2
-# A barrier problem of a first solve is left when the cost has changed over so many steps by less
+# A barrier problem is left when a step, taken at full length, would have changed the cost by less
 # than this part of the sum of products, mu at each bound, with rows nearly held.
-_LOOK_BACK, _LITTLE_LEFT, _NEARLY_HELD = 4, 0.03, 0.1
+_LITTLE_LEFT, _NEARLY_HELD = 0.3, 0.1
+_TURNED, _HALF = -0.3, 0.5  # cosine between steps from which on one turns back; and its length
 
 
 class InteriorPoint(BarrierProblem):
-    """The iteration; call `step` until the errors are small. Arguments: see `BarrierProblem`."""
+    """The iteration; call `step` until the errors are small.
+
+    Args:
+        bends: whether steps bend at bounds, and turn back half way; others: see `BarrierProblem`.
+    """
 
     def __init__(
         self,
@@ -46,18 +52,20 @@ class InteriorPoint(BarrierProblem):
         last_barrier: float,
         push: float,
         known: Multipliers | None = None,
+        bends: bool = True,
     ):
         super().__init__(program, system, x, barrier, last_barrier, push, known)
-        self._regularisation, self._small_steps = Regularisation(system), 0
+        self._bends, self._overshoot = bends, OVERSHOOT if bends else 1.0
+        self._regularisation = Regularisation(system)
         self._filter = Filter(np.abs(self.primal).sum())
-        self._costs: list[float] = []  # with this barrier parameter
-        self._first_solve = known is None
+        self._last_change = np.inf  # of the cost by a full step, with this barrier parameter
+        self._last_step = np.zeros(0)
 
-    def lower_barrier(self, factor: float | None = None) -> None:
+    def lower_barrier(self, *factor: float) -> None:
         """Go on to the next barrier problem."""
-        super().lower_barrier(factor)
+        super().lower_barrier(*factor)
         self._filter.clear()
-        self._small_steps, self._costs = 0, []
+        self._last_change = np.inf
 
     def move_bounds(self, program: GaitProgram, system: CondensedSystem) -> None:
         """Go on with a program that differs in bounds only."""
@@ -68,13 +76,10 @@ class InteriorPoint(BarrierProblem):
     @property
     def little_left(self) -> bool:
         """Whether the cost of this barrier problem changes little beside what the barrier adds."""
-        if not self._first_solve or self.at_last_barrier or self.violation > _NEARLY_HELD:
+        if self.at_last_barrier or self.violation > _NEARLY_HELD:
             return False
-        if len(self._costs) <= _LOOK_BACK:
-            return False
-        change = abs(self._costs[-1] - self._costs[-1 - _LOOK_BACK])
         count = np.count_nonzero(self.has_low) + np.count_nonzero(self.has_high)
-        return change < _LITTLE_LEFT * self.barrier * count
+        return self._last_change < _LITTLE_LEFT * self.barrier * count
 
     def step(self) -> bool:
         """One iteration; False if no acceptable step was found."""
@@ -86,7 +91,7 @@ class InteriorPoint(BarrierProblem):
         self.system.linearise(
             self.x, z.rows, by_row, stiffness[: self.size], self.jacobian
         )
-        if not self._regularisation.factor(self._small_steps >= _CREEPING):
+        if not self._regularisation.factor():
             return False
         targets = Targets.equal(self.barrier, len(self.w))
         push = targets.push(low, high)
@@ -119,8 +124,8 @@ class InteriorPoint(BarrierProblem):
     ) -> bool:
         """A longer step by corrected targets; moves if there is one and it is accepted."""
         low, high = self.gaps(self.w)
-        fraction, push = self._fraction, targets.push(low, high)
-        longest = longest_step(low, high, direction[0], fraction)
+        push = targets.push(low, high)
+        longest = self._longest(direction[0])
         better = None
         for _ in range(CORRECTIONS):
             if longest > LONG:
@@ -129,14 +134,14 @@ class InteriorPoint(BarrierProblem):
                 self.barrier, low, high, self.multipliers, direction[0], longest
             )
             other = self._direction(self.primal, stiffness, corrected.push(low, high))
-            length = longest_step(low, high, other[0], fraction)
+            length = self._longest(other[0])
             if length < longest + WORTH:
                 break
             targets, direction, longest, better = corrected, other, length, other
         if better is None:
             return False
         dw, dy = better
-        trial = self.w + longest * dw
+        trial = self._along(dw, longest)
         measures, _ = self.measure(trial)
         theta, phi = np.abs(self.primal).sum(), self.barrier_cost(self.w, self.cost)
         slope = float(self.gradient @ dw[: self.size] + push @ dw)
@@ -153,7 +158,7 @@ class InteriorPoint(BarrierProblem):
     ) -> bool:
         """Backtracking line search; moves if a step is accepted."""
         dw, dy = direction
-        longest = longest_step(*self.gaps(self.w), dw, self._fraction)
+        longest = self._longest(dw)
         theta = np.abs(self.primal).sum()
         phi = self.barrier_cost(self.w, self.cost)
         slope = float(self.gradient @ dw[: self.size] + push @ dw)
@@ -161,7 +166,7 @@ class InteriorPoint(BarrierProblem):
         step, first = longest, True
         equal = Targets.equal(self.barrier, len(dw))
         while step >= max(smallest, 1e-8):
-            trial = self.w + step * dw
+            trial = self._along(dw, step)
             measures, primal = self.measure(trial)
             if self._filter.accepts(theta, phi, measures, slope, step):
                 self._move(trial, dw, dy, step, equal)
@@ -182,8 +187,8 @@ class InteriorPoint(BarrierProblem):
         before, equal = np.inf, Targets.equal(self.barrier, len(self.w))
         for _ in range(_CORRECTIONS):
             dw, dy = self._direction(total, stiffness, push)
-            longest = longest_step(*self.gaps(self.w), dw, self._fraction)
-            trial = self.w + longest * dw
+            longest = self._longest(dw)
+            trial = self._along(dw, longest)
             measures, primal = self.measure(trial)
             if self._filter.accepts(theta, phi, measures, slope, step):
                 self._move(trial, dw, dy, longest, equal)
@@ -198,6 +203,22 @@ class InteriorPoint(BarrierProblem):
         """Of the distance to a bound that a step may use, (8)."""
         return max(_TAU, 1.0 - self.barrier)
 
+    def _longest(self, dw: np.ndarray) -> float:
+        """The longest step along `dw` that is tried."""
+        most = self._overshoot * longest_step(*self.gaps(self.w), dw, self._fraction)
+        return min(_HALF if self._turns_back(dw) else 1.0, most)
+
+    def _turns_back(self, dw: np.ndarray) -> bool:
+        one, other = dw[: len(self._last_step)], self._last_step
+        size = np.sqrt((one @ one) * (other @ other))
+        back = float(one @ other) < _TURNED * size
+        return self._bends and self.at_last_barrier and back
+
+    def _along(self, dw: np.ndarray, step: float) -> np.ndarray:
+        if not self._bends:
+            return self.w + step * dw
+        return along(self.w, step * dw, *self.gaps(self.w))
+
     def _move(
         self, w: np.ndarray, dw: np.ndarray, dy: np.ndarray, step: float, targets: Targets
     ) -> None:
@@ -205,22 +226,25 @@ class InteriorPoint(BarrierProblem):
         z, barrier, before = self.multipliers, self.barrier, self.cost
         d_low, d_high = targets.changes(*self.gaps(self.w), z, dw)
         free = np.full(len(w), np.inf)
-        longest = min(
+        longest = self._overshoot * min(
             longest_step(z.lower, free, d_low, self._fraction),
             longest_step(z.upper, free, d_high, self._fraction),
         )
+        longest = min(1.0, longest)
+        self._last_step = (w - self.w)[: self.size]
         self.w = w
-        new_low, new_high = self.gaps(w)
+        gaps = self.gaps(w)
 
-        def guarded(value: np.ndarray, gap: np.ndarray) -> np.ndarray:
-            return np.clip(value, barrier / (_KAPPA_SIGMA * gap), _KAPPA_SIGMA * barrier / gap)
+        def changed(value: np.ndarray, change: np.ndarray, gap: np.ndarray) -> np.ndarray:
+            share = np.divide(change, value, out=np.zeros_like(value), where=value > 0.0)
+            factor = bent(longest * share) if self._bends else 1.0 + longest * share
+            least, most = barrier / (_KAPPA_SIGMA * gap), _KAPPA_SIGMA * barrier / gap
+            return np.clip(value * factor, least, most)
 
         self.multipliers = Multipliers(
             z.rows + step * dy,
-            guarded(z.lower + longest * d_low, new_low),
-            guarded(z.upper + longest * d_high, new_high),
+            changed(z.lower, d_low, gaps[0]),
+            changed(z.upper, d_high, gaps[1]),
         )
         self.evaluate()
-        self._costs.append(self.cost)
-        small = step >= _FULL and abs(self.cost - before) < _LITTLE_CHANGE * abs(before)
-        self._small_steps = self._small_steps + 1 if small else 0
+        self._last_change = abs(self.cost - before) / step

@@ -1,7 +1,8 @@
 """How K is made positive definite, so that a step is one of descent.
 
-First as it is; then with the muscles' lack of convexity made up for (`convexity`); then with a
-multiple of the identity besides (Waechter & Biegler 2006, section 3.1).
+First as it is; then with a share of what the muscles lack to be convex (`convexity`), a few times
+the least; then with all of it and a multiple of the identity besides (Waechter & Biegler 2006,
+section 3.1).
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ _FIRST, _SMALLEST, _LARGEST = 1e-4, 1e-20, 1e40
 _UP, _UP_FIRST, _DOWN = 8.0, 100.0, 1.0 / 3.0
 _AFTER_SEARCH = 1e-2  # least multiple after a line search that found nothing
 _MOST = 1e4  # beyond it a step is too short to serve
-# A model that lies above the cost all along creeps where the cost is nearly flat. There the share
-# of convexity is halved as long as K allows, and taken this much above the least.
-_HALVINGS, _ABOVE = 4, 1.5
+# A model that lies above the cost all along creeps, one that hardly bends goes too far: the share
+# of convexity is so many times what K needs at the least, and a little.
+_ABOVE, _A_LITTLE = 2.5, 0.02
 
 
 class Regularisation:
@@ -34,29 +35,22 @@ class Regularisation:
         """Go on with the matrices of `system`, which is like the one before."""
         self._system = system
 
-    def factor(self, creeping: bool) -> bool:
-        """Factorise K with as little as serves; False if nothing does.
-
-        Args:
-            creeping: full steps have hardly changed the cost.
-        """
+    def factor(self) -> bool:
+        """Factorise K with as little as serves; False if nothing does."""
         self._convexity = self._shift = 0.0
         if self._try():
             return True
         self._convexity = 1.0
         if not self._try():
             return self._shifted(_FIRST if self._last_shift == 0.0 else 0.0)
-        if creeping:
-            low, high = 0.0, 1.0
-            for _ in range(_HALVINGS):
-                self._convexity = 0.5 * (low + high)
-                if self._try():
-                    high = self._convexity
-                else:
-                    low = self._convexity
-            self._convexity = min(1.0, _ABOVE * high)
-            return self._try()
-        return True
+        share = _ABOVE * self._system.least_convexity() + _A_LITTLE
+        if share >= 1.0:
+            return True
+        self._convexity = share
+        if self._try():
+            return True
+        self._convexity = 1.0
+        return self._try()
 
     def more(self) -> bool:
         """Factorise with a larger multiple of the identity; False if there is no use in that."""

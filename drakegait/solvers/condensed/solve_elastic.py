@@ -43,7 +43,10 @@ def solve_elastic(
     barrier, push = (_NEAR_BARRIER, _NEAR_PUSH) if near else (_FIRST_BARRIER, _PUSH)
     monitor.begin(elastic)
     system = ElasticSystem(elastic)
-    method = InteriorPoint(elastic, system, x, barrier, last_barrier(options), push)
+    # p and n come in pairs, thousands of them near 0: bent one by one, they break their rows.
+    method = InteriorPoint(
+        elastic, system, x, barrier, last_barrier(options), push, bends=False
+    )
     iterations, status, detail = iterate(method, options, monitor)
     elastic.smoothing = 1.0
     return solution_of(method, monitor, iterations, status or "failed", detail)

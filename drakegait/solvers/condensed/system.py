@@ -28,6 +28,7 @@ from drakegait.solvers.condensed.assembly import Assembly, add_square, own_block
 from drakegait.solvers.condensed.border import Border
 from drakegait.solvers.condensed.convexity import convex_excess
 from drakegait.solvers.condensed.cyclic_band import CyclicBandMatrix
+from drakegait.solvers.condensed.least_convexity import least_share
 from drakegait.solvers.condensed.linearisation import Linearisation
 from drakegait.solvers.condensed.local_elimination import LocalElimination
 from drakegait.solvers.condensed.local_variables import LocalVariables, hessian_times
@@ -51,9 +52,10 @@ class CondensedSystem:
         self.num_shared = program.design.offsets["multipliers"]
         self._arms = program.formulation.walker.muscles.moment_arms
         self._assembly = Assembly(program, self.num_shared)
-        shape = (program.num_constraints, program.num_variables)
+        shape = program.num_constraints, program.num_variables
         self._jacobian = SparseStructure(program.jacobian_rows, program.jacobian_columns, shape)
         self._variables = LocalVariables(program)
+        self._flattest: np.ndarray | None = None  # direction that lacks convexity most
         self._locate_local()
         self._classify_rows()
 
@@ -185,7 +187,7 @@ class CondensedSystem:
         return out
 
     def _lack(self) -> CyclicBandMatrix:
-        """What the muscles lack to be convex, as a part of K."""
+        """L, what the muscles lack to be convex, as a part of K."""
         if self._convexifying is None:
             walker, curvature = self._program.formulation.walker, self._curvature
             excess = convex_excess(curvature.physical.muscles, walker.muscles)
@@ -195,22 +197,25 @@ class CondensedSystem:
         return self._convexifying
 
     def factor(self, shift: float, convexity: float = 0.0) -> bool:
-        """Factorise K + shift I; False if that is not positive definite.
-
-        Args:
-            convexity: share of the muscles' negative curvature that is made up for.
-        """
+        """Factorise K + shift I + `convexity` of L; False if that is not positive definite."""
         self._convexity = convexity
-        plain = convexity == 0.0
-        matrix = self.matrix.copy() if plain else self.matrix.plus(self._lack(), convexity)
+        matrix = self.matrix.plus(self._lack(), convexity) if convexity else self.matrix.copy()
         matrix.add_diagonal(shift)
-        self._border.weigh(matrix, np.abs(self.matrix.diagonal()).mean())
+        self._border.weigh(matrix, self.matrix)
         factor = matrix.factor()
         if factor is None:
             return False
         self.shift = shift
         self._border.factored(factor)
         return True
+
+    def least_convexity(self) -> float:
+        """The share of L that K needs, after K + L was factorised."""
+        convex = self.matrix.plus(self._lack(), 1.0)
+        self._border.weigh(convex, self.matrix)
+        known = self._border.factor, self._flattest
+        share, self._flattest = least_share(self._lack(), convex, *known)
+        return share
 
     # Solve -------------------------------------------------------------------------------
 
