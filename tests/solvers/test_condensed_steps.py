@@ -234,6 +234,23 @@ def test_at_the_last_barrier_parameter_a_step_that_turns_back_goes_half_way(
     assert method._longest(-back) == 1.0
 
 
+@pytest.mark.parametrize("far", [False, True])
+def test_multipliers_of_another_walk_count_where_laws_nearly_hold(
+    program: GaitProgram, far: bool
+) -> None:
+    x = guess_from_reference(program)
+    if far:
+        x = x + 0.05 * np.random.default_rng(6).normal(size=len(x))
+    given = np.full(program.num_constraints, 0.5)
+    bounds = np.zeros(program.num_variables)
+    method = InteriorPoint(
+        program, CondensedSystem(program, LagrangianHessian(program)), x, 1e-4, 1e-6, push=1e-2,
+        known=Multipliers(given, bounds, bounds),
+    )  # fmt: skip
+    assert (method.violation > 15.0) == far
+    np.testing.assert_array_equal(method.multipliers.rows, 0.0 if far else given)
+
+
 def test_steps_go_beyond_bounds_only_where_they_bend(program: GaitProgram) -> None:
     for bends in (True, False):
         system = CondensedSystem(program, LagrangianHessian(program))

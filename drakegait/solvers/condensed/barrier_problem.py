@@ -16,6 +16,7 @@ from drakegait.solvers.condensed.system import CondensedSystem
 
 _KAPPA_EPS, _KAPPA_MU = 30.0, 0.1  # barrier problem, (7); looser than theirs
 _LEAST_KNOWN = 0.1  # of mu over the distance to a bound, for multipliers from elsewhere
+_FAR_OFF = 15.0  # tolerances: where rows are off by more, they say little
 _SCALE_MAX = 100.0  # s_max of (5)
 _NARROW = 1e-6  # the barrier parameter at which corners have their own width
 
@@ -29,7 +30,8 @@ class BarrierProblem:
         barrier: first mu.
         last_barrier: smallest mu.
         push: least distance of the start from its bounds, relative.
-        known: multipliers of rows and of lower and upper bounds from a solve nearby.
+        known: multipliers of rows and of lower and upper bounds from a solve nearby; unused if rows
+            are far off.
 
     Attributes:
         barrier: mu.
@@ -57,7 +59,8 @@ class BarrierProblem:
         )
         self.w = np.concatenate([x, slacks])
         self.barrier, self._last_barrier = barrier, last_barrier
-        self.multipliers = self._first_multipliers(known)
+        far = np.abs(self._primal_of(self.w)).max() > _FAR_OFF
+        self.multipliers = self._first_multipliers(None if far else known)
         program.smoothing = self.smoothing
         self.evaluate()
 
