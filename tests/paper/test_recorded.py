@@ -53,10 +53,10 @@ EXPECTED: dict[str, tuple[str, ...]] = {
         "yes",
         "no clear change",
         "yes",
-        "no clear change",
+        "no",
         "no",
         "yes",
-        "no clear change",
+        "yes",
     ),
     "spatial-symmetric": ("no",),
     "formulation": (
