@@ -100,12 +100,11 @@ def test_a_solve_that_got_stuck_goes_on_from_where_all_laws_hold(
 ) -> None:
     program, x = program_of(SMALL)
     assert solve_least(program, x, Monitor(120.0)).status == ""
-    stuck, times = Stalled.after, []
+    stuck, once = Stalled.after, iter([True])
 
     def at_once(self: Stalled, violation: float, barrier: float) -> None:
         stuck(self, violation, barrier)
-        self.reached = violation > 1.0 and not times
-        times.extend([1] * self.reached)
+        self.reached = violation > 1.0 and next(once, False)
 
     monkeypatch.setattr(Stalled, "after", at_once)
     monkeypatch.setattr(solve_module, "_by_ipopt", None)  # nothing is left to it

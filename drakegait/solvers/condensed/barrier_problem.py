@@ -14,7 +14,7 @@ from drakegait.program.gait_program import GaitProgram
 from drakegait.solvers.condensed.iterate import Errors, Multipliers, inside
 from drakegait.solvers.condensed.system import CondensedSystem
 
-_KAPPA_EPS, _KAPPA_MU = 30.0, 0.1  # barrier problem, (7); looser than theirs
+_KAPPA_EPS, KAPPA_MU = 30.0, 0.1  # barrier problem, (7); looser than theirs
 _LEAST_KNOWN = 0.1  # of mu over the distance to a bound, for multipliers from elsewhere
 _FAR_OFF = 15.0  # tolerances: where rows are off by more, they say little
 _SCALE_MAX = 100.0  # s_max of (5)
@@ -59,8 +59,7 @@ class BarrierProblem:
         )
         self.w = np.concatenate([x, slacks])
         self.barrier, self._last_barrier = barrier, last_barrier
-        far = np.abs(self._primal_of(self.w)).max() > _FAR_OFF
-        self.multipliers = self._first_multipliers(None if far else known)
+        self.multipliers = self._first_multipliers(known)
         program.smoothing = self.smoothing
         self.evaluate()
 
@@ -94,7 +93,7 @@ class BarrierProblem:
 
     def _first_multipliers(self, known: Multipliers | None) -> Multipliers:
         low, high = self.barrier / np.stack(self.gaps(self.w))
-        if known is None:
+        if known is None or np.abs(self._primal_of(self.w)).max() > _FAR_OFF:
             return Multipliers(np.zeros(self.program.num_constraints), low, high)
         of_slacks = known.rows[self.inequality]
         return Multipliers(
@@ -179,7 +178,7 @@ class BarrierProblem:
         cost = self.barrier_cost(w, self.program.cost(w[: self.size]))
         return (theta, cost if np.isfinite(cost) else np.inf), primal
 
-    def lower_barrier(self, factor: float = _KAPPA_MU) -> None:
+    def lower_barrier(self, factor: float = KAPPA_MU) -> None:
         """Go on to the next barrier problem, (7)."""
         self.barrier = max(self._last_barrier, factor * self.barrier)
         if self.smoothing != self.program.smoothing:

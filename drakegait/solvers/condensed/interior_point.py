@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 from drakegait.program.gait_program import GaitProgram
-from drakegait.solvers.condensed.barrier_problem import BarrierProblem
+from drakegait.solvers.condensed.barrier_problem import KAPPA_MU, BarrierProblem
 from drakegait.solvers.condensed.bent_steps import OVERSHOOT, along, bent
 from drakegait.solvers.condensed.centrality import CORRECTIONS, LONG, WORTH, Targets
 from drakegait.solvers.condensed.filter import Filter
@@ -55,15 +55,15 @@ class InteriorPoint(BarrierProblem):
         bends: bool = True,
     ):
         super().__init__(program, system, x, barrier, last_barrier, push, known)
-        self._bends, self._overshoot = bends, OVERSHOOT if bends else 1.0
+        self._bends = bends
         self._regularisation = Regularisation(system)
         self._filter = Filter(np.abs(self.primal).sum())
         self._last_change = np.inf  # of the cost by a full step, with this barrier parameter
         self._last_step = np.zeros(0)
 
-    def lower_barrier(self, *factor: float) -> None:
+    def lower_barrier(self, factor: float = KAPPA_MU) -> None:
         """Go on to the next barrier problem."""
-        super().lower_barrier(*factor)
+        super().lower_barrier(factor)
         self._filter.clear()
         self._last_change = np.inf
 
@@ -203,16 +203,21 @@ class InteriorPoint(BarrierProblem):
         """Of the distance to a bound that a step may use, (8)."""
         return max(_TAU, 1.0 - self.barrier)
 
+    @property
+    def _overshoot(self) -> float:
+        """How far a step may go, in steps to the nearest bound."""
+        return OVERSHOOT if self._bends else 1.0
+
     def _longest(self, dw: np.ndarray) -> float:
         """The longest step along `dw` that is tried."""
         most = self._overshoot * longest_step(*self.gaps(self.w), dw, self._fraction)
         return min(_HALF if self._turns_back(dw) else 1.0, most)
 
     def _turns_back(self, dw: np.ndarray) -> bool:
+        if not (self._bends and self.at_last_barrier):
+            return False
         one, other = dw[: len(self._last_step)], self._last_step
-        size = np.sqrt((one @ one) * (other @ other))
-        back = float(one @ other) < _TURNED * size
-        return self._bends and self.at_last_barrier and back
+        return float(one @ other) < _TURNED * np.sqrt((one @ one) * (other @ other))
 
     def _along(self, dw: np.ndarray, step: float) -> np.ndarray:
         if not self._bends:

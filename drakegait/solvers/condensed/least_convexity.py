@@ -7,6 +7,8 @@ Lanczos iteration finds it with a dozen solves by the factor of C, which is ther
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
@@ -35,12 +37,12 @@ def least_share(
     if towards is None:
         towards = np.random.default_rng(0).standard_normal(size)
 
-    def operator(times: object) -> LinearOperator:
+    def operator(times: Callable[[np.ndarray], np.ndarray]) -> LinearOperator:
         return LinearOperator((size, size), matvec=times, dtype=float)
 
     try:
         values, vectors = eigsh(
-            operator(lambda x: lack @ x), 1, operator(lambda x: convex @ x), which="LA",
+            operator(lack.__matmul__), 1, operator(convex.__matmul__), which="LA",
             Minv=operator(factor.solve), v0=towards, ncv=min(_BASIS, size), tol=_ACCURACY,
         )  # fmt: skip
     except ArpackError:  # no convergence
