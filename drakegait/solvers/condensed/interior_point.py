@@ -156,7 +156,10 @@ class InteriorPoint(BarrierProblem):
         stiffness: np.ndarray,
         push: np.ndarray,
     ) -> bool:
-        """Backtracking line search; moves if a step is accepted."""
+        """Backtracking line search; moves if a step is accepted.
+
+        Where the bent step is not, straight ones are tried: many unknowns that bend bend rows.
+        """
         dw, dy = direction
         longest = self._longest(dw)
         theta = np.abs(self.primal).sum()
@@ -166,7 +169,7 @@ class InteriorPoint(BarrierProblem):
         step, first = longest, True
         equal = Targets.equal(self.barrier, len(dw))
         while step >= max(smallest, 1e-8):
-            trial = self._along(dw, step)
+            trial = self._along(dw, step) if first else self.w + step * dw
             measures, primal = self.measure(trial)
             if self._filter.accepts(theta, phi, measures, slope, step):
                 self._move(trial, dw, dy, step, equal)
@@ -174,8 +177,9 @@ class InteriorPoint(BarrierProblem):
             worse = first and theta <= measures[0] < np.inf
             if worse and self._correct(primal, stiffness, push, theta, phi, slope, step):
                 return True
+            straight = longest_step(*self.gaps(self.w), dw, self._fraction)
+            step = straight if first and straight < step else 0.5 * step
             first = False
-            step *= 0.5
         return False
 
     def _correct(
