@@ -104,8 +104,8 @@ def test_the_study_itself_has_no_walk_where_its_remedy_has_one(name):
     assert remedy.gait.converged and remedy.gait.report.passed
     assert remedy.study.speed <= study.speed
     # The very same start, with and without the change.
-    asked = solve(study, guess=remedy.gait, max_iterations=400)
-    helped = solve(remedy.study, guess=remedy.gait, max_iterations=400)
+    asked = solve(study, guess=remedy.gait, max_iterations=200)
+    helped = solve(remedy.study, guess=remedy.gait, max_iterations=200)
     assert not (asked.converged and asked.report.passed)
     assert helped.converged and helped.report.passed
 
