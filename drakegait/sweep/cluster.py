@@ -257,9 +257,14 @@ def _joined(address: str) -> Iterator[Client]:
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError):  # time-outs are OSErrors
         raise InvalidInput("scheduler", address, allowed) from None
-    with _silence(), client:
-        _compare_versions(client)
-        yield client
+    with _silence():
+        try:
+            _compare_versions(client)
+            yield client
+        finally:
+            # If the scheduler has gone away Dask closes the client, too, and trips over ours.
+            with contextlib.suppress(RuntimeError, OSError):
+                client.close()
 
 
 def _compare_versions(client: Client) -> None:

@@ -51,6 +51,23 @@ def test_a_scheduler_that_goes_away_ends_the_sweep_and_costs_nothing(
     assert result.failures == {} and cases.trace(traces, "end") == ["1", "1.1"]
 
 
+def test_a_client_that_dask_cannot_close_hides_nothing(scheduler, monkeypatch):
+    """Dask itself closes one whose scheduler has gone away, and fails if we do at the same time."""
+    from distributed import Client
+
+    close = Client.close
+
+    def trip(client, *args, **kwargs):
+        close(client, *args, **kwargs)
+        raise RuntimeError("Cannot change state of expiring Timeout")
+
+    monkeypatch.setattr(Client, "close", trip)
+    lost = pytest.raises(cluster.ClusterLost, match="as before")
+    with lost, cluster.connected(None, scheduler, 1):
+        raise cluster.ClusterLost("as before")
+    monkeypatch.undo()
+
+
 def test_a_worker_keeps_to_one_core_and_is_replaced_when_its_keeper_gives_up(monkeypatch):
     """Neither the first nor its successor hears Ctrl-C; we do."""
 
