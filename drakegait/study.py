@@ -33,7 +33,7 @@ from drakegait.walker import coordinates
 from drakegait.walker.disorders import Asymmetry, Disorder, Pain, check_disorders
 from drakegait.walker.feet import ContactSettings
 from drakegait.walker.metabolics import EnergySettings
-from drakegait.walker.muscle_dynamics import MuscleSettings
+from drakegait.walker.muscle_settings import MuscleSettings
 from drakegait.walker.passive_joints import PassiveSettings
 from drakegait.walker.subject import AddedMass, Subject
 from drakegait.walker.walker import Walker

@@ -36,6 +36,7 @@ from drakegait.program.physical_hessian import (
     hessian_of_muscles,
     physical_hessian,
 )
+from drakegait.walker.corners import CornerSlopes
 from drakegait.walker.dynamics_curvature import DynamicsCurvature
 
 
@@ -135,8 +136,9 @@ class LagrangianHessian:
         multipliers: np.ndarray,
         objective: float,
         stiffness: np.ndarray | None = None,
+        corners: CornerSlopes | None = None,
     ) -> LocalCurvature:
-        """Second derivatives at the control points; see `values`."""
+        """Second derivatives at the control points; see `values`, `physical_hessian`."""
         weights = self._weights(multipliers)
         springs = None if stiffness is None else self._weights(stiffness, power=2)(Excitation)
         costs = {type(cost): cost for cost in self._program.costs}
@@ -148,7 +150,7 @@ class LagrangianHessian:
             add_energy_weights(
                 blocks, costs[MetabolicCost], directions, self._spans, objective
             )
-        physical = physical_hessian(state, self._dynamics, weights, power, springs)
+        physical = physical_hessian(state, self._dynamics, weights, power, springs, corners)
         carry(blocks, physical, directions, self._spans.arms)
         if Deviation in costs:
             add_deviation(blocks, costs[Deviation], objective)

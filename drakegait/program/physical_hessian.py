@@ -20,6 +20,7 @@ from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
 from drakegait.program.local_rows import LocalRows
 from drakegait.program.local_state import LocalState
 from drakegait.walker import feet
+from drakegait.walker.corners import CornerSlopes
 from drakegait.walker.dynamics_curvature import DynamicsCurvature, Weights
 
 LawWeights = Callable[[type[LocalRows]], np.ndarray | None]
@@ -55,10 +56,12 @@ def physical_hessian(
     weights: LawWeights,
     power: np.ndarray,
     springs: np.ndarray | None = None,
+    corners: CornerSlopes | None = None,
 ) -> PhysicalHessian:
     """All laws by their multipliers, and the muscles' power by the weight `power` (num,).
 
-    With `springs` w (num, 2 num_muscles) on the excitation rows g, w g_y^T g_y is added.
+    With `springs` w (num, 2 num_muscles) on the excitation rows g, w g_y^T g_y is added; with
+    `corners` those of the muscles curve as steps need (`walker.corners`).
     """
     walker = state.formulation.walker
     balance = weights(EquationsOfMotion)
@@ -79,7 +82,7 @@ def physical_hessian(
     motion[:, :, 2, :, 0] = np.swapaxes(blocks.qa, 1, 2)
     first = _first_derivatives(state, balance, velocities, contact, weights(JointLimits))
     excitation = excitation_weights(walker, weights(Excitation))
-    curved, by_muscle = _muscles(state, excitation, power)
+    curved, by_muscle = _muscles(state, excitation, power, corners)
     muscles = curved
     if springs is not None:
         slopes = excitation_rows(walker, state.muscles[1][:, :, :2])
@@ -150,7 +153,7 @@ def _first_derivatives(
 
 
 def _muscles(
-    state: LocalState, excitation: np.ndarray, power: np.ndarray
+    state: LocalState, excitation: np.ndarray, power: np.ndarray, corners: CornerSlopes | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Weighted Hessian (num, m, 6, 6) and gradient (num, m, 6) by the muscles' inputs."""
     functions = state.formulation.walker.muscle_functions
@@ -158,5 +161,5 @@ def _muscles(
     weights = np.concatenate(
         [excitation.reshape(num, m, 2), np.broadcast_to(power[:, None, None], (num, m, 1))], axis=2
     )
-    hessian = functions.hessian(state.muscle_inputs, weights, state.smoothing)
+    hessian = functions.hessian(state.muscle_inputs, weights, state.smoothing, corners)
     return hessian, (weights[:, :, None] @ state.muscles[1])[:, :, 0]

@@ -60,6 +60,10 @@ class ColumnwiseFunction:
         self._ready: dict[int, _Interpreter | _Blocks] = {}
         self._sizes = [function.numel_out(i) for i in range(function.n_out())]
 
+    def num_inputs(self, argument: int) -> int:
+        """Size of an argument; the constants are number 0."""
+        return self._function.numel_in(argument)
+
     def __call__(self, smoothing: float, *inputs: np.ndarray) -> list[np.ndarray]:
         """Results (..., num_rows, size) for inputs (..., num_rows, k), C order, float."""
         leading = inputs[0].shape[:-1]

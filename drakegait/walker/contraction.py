@@ -1,7 +1,7 @@
 """From tendon force and path to activation: one muscle's equations, inverted.
 
-Written once for two backends: `math` is `casadi` (symbols, for derivatives) or `numpy`
-(arrays, for the exact states of a finished gait). Lengths are in units of the
+Written once for two backends: `math` is `casadi` or `Corners` (symbols, for derivatives) or
+`numpy` (arrays, for the exact states of a finished gait). Lengths are in units of the
 optimal fibre length, forces in units of the maximal force, times in s; fibres
 that shorten have negative velocity.
 
@@ -15,8 +15,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from drakegait.walker.corners import TINY, noted, positive_part
+
 if TYPE_CHECKING:
-    from drakegait.walker.muscle_dynamics import MuscleSettings
+    from drakegait.walker.muscle_settings import MuscleSettings
 
 FORCE_LENGTH_FLOOR = 0.02
 FORCE_LENGTH_FLOOR_WIDTH = 0.02
@@ -29,8 +31,6 @@ EXCITATION_ROOT_WIDTH = 1e-3
 # jumps, hence the slope of the excitation; an optimum in that corner is one at which no Newton
 # step ends. With this width the muscle's force changes by less than 3e-4 of the isometric one.
 TURNING_WIDTH = 0.1
-# Keeps derivatives of roots finite where their argument is exactly 0.
-TINY = 1e-40
 
 
 @dataclass(frozen=True)
@@ -65,11 +65,6 @@ class Contraction:
     force_velocity: Any  # g, with its floor
     activation: Any
     activation_rate: Any  # [1/s]
-
-
-def positive_part(math: Any, x: Any, width: Any) -> Any:
-    """Smooth max(x, 0): (x + sqrt(x^2 + width^2)) / 2, too large by width/2 at x = 0."""
-    return 0.5 * (x + math.sqrt(x * x + width * width))
 
 
 def _positive_part_and_slope(math: Any, x: Any, width: Any) -> tuple[Any, Any, Any]:
@@ -193,7 +188,8 @@ def _force_velocity(
     gain = settings.f_asympt - 1.0
     width = TURNING_WIDTH * guard
     root = math.sqrt(nu * nu + (width * width + TINY))
-    shortening, lengthening = 0.5 * (nu - root), 0.5 * (nu + root)
+    shift = noted(math, nu, width)
+    shortening, lengthening = 0.5 * (nu - root) - shift, 0.5 * (nu + root) + shift
     shortening1 = 0.5 * nu1 * (1.0 - nu / root)
     lengthening1 = nu1 - shortening1
 

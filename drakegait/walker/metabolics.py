@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from drakegait.settings import Settings, choice, flag, quantity
-from drakegait.walker.contraction import Contraction, MuscleConstants, positive_part
+from drakegait.walker.contraction import Contraction, MuscleConstants
+from drakegait.walker.corners import corner
 from drakegait.walker.muscles import DENSITY, SPECIFIC_TENSION
 
 # Umberger et al. 2003: heat of activation and maintenance, and its dependence on length.
@@ -117,8 +118,8 @@ def energy_rate(
     scaling = settings.aerobic_scaling
 
     # A: u where it exceeds a, else their mean.
-    drive = 0.5 * (u + a + positive_part(math, u - a, EXCITATION_WIDTH * smoothing))
-    drive = positive_part(math, drive, ACTIVATION_WIDTH * smoothing)
+    drive = 0.5 * (u + a + corner(math, u - a, EXCITATION_WIDTH * smoothing))
+    drive = corner(math, drive, ACTIVATION_WIDTH * smoothing)
     shift = ACTIVATION_SHIFT * smoothing
     drive_heat = (drive + shift) ** ACTIVATION_EXPONENT - shift**ACTIVATION_EXPONENT
 
@@ -137,27 +138,27 @@ def energy_rate(
     slow_speed = muscle.fast_speed / settings.speed_ratio
     alpha_slow = SHORTENING_HEAT_SLOW / slow_speed
     alpha_fast = SHORTENING_HEAT_FAST / muscle.fast_speed
-    shortening = positive_part(math, -nu, VELOCITY_WIDTH * smoothing)
+    shortening = corner(math, -nu, VELOCITY_WIDTH * smoothing)
     lengthening = nu + shortening
-    capped = slow_speed - positive_part(math, slow_speed - shortening, CAP_WIDTH * smoothing)
+    capped = slow_speed - corner(math, slow_speed - shortening, CAP_WIDTH * smoothing)
     shortening_heat = alpha_slow * capped * (1.0 - fast) + alpha_fast * shortening * fast
     lengthening_heat = LENGTHENING_FACTOR[settings.model] * alpha_slow * lengthening
     motion_heat = scaling * overlap * drive * (shortening_heat * drive + lengthening_heat)
 
     work = -(settings.specific_tension / settings.density) * fibres.force * nu
     if settings.model == "umberger2010":
-        work = positive_part(math, work, HEAT_WIDTH * smoothing)
+        work = corner(math, work, HEAT_WIDTH * smoothing)
     heat = activation_heat + motion_heat
     if settings.heat_floor == "total":
         heat = _at_least(math, heat, settings.least_heat, smoothing)
     total = heat + work
     if settings.forbid_negative_power:
-        total = positive_part(math, total, HEAT_WIDTH * smoothing)
+        total = corner(math, total, HEAT_WIDTH * smoothing)
     return EnergyRate(activation_heat, motion_heat, work, total)
 
 
 def _at_least(math: Any, heat: Any, least: float, smoothing: Any) -> Any:
-    return least + positive_part(math, heat - least, HEAT_WIDTH * smoothing)
+    return least + corner(math, heat - least, HEAT_WIDTH * smoothing)
 
 
 def _fast_fraction(
@@ -170,6 +171,6 @@ def _fast_fraction(
     """
     if settings.recruitment == "uniform":
         return muscle.fast_twitch
-    excited = math.fmin(positive_part(math, u, EXCITATION_WIDTH * smoothing), 1.0)
+    excited = math.fmin(corner(math, u, EXCITATION_WIDTH * smoothing), 1.0)
     fast = muscle.fast_twitch * math.tan(0.25 * 3.141592653589793 * excited)
     return fast / (1.0 - muscle.fast_twitch + fast)

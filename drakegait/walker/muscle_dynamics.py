@@ -14,14 +14,14 @@ the equations; here they become compiled functions over all muscles and instants
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, fields
 from functools import cached_property
+from typing import Any
 
 import casadi
 import numpy as np
 
 from drakegait.errors import InvalidInput
-from drakegait.settings import Settings, choice, quantity
 from drakegait.walker.columnwise import ColumnwiseFunction
 from drakegait.walker.contraction import (
     MuscleConstants,
@@ -29,93 +29,22 @@ from drakegait.walker.contraction import (
     excitation,
     excitation_bounds,
 )
+from drakegait.walker.corners import Corners, CornerSlopes
 from drakegait.walker.metabolics import EnergySettings, energy_rate
+from drakegait.walker.muscle_settings import MuscleSettings
 from drakegait.walker.muscles import MuscleSet
 
 NUM_INPUTS = 6
 NUM_OUTPUTS = 3
 
-# One triangle of second derivatives is computed; each place of the matrix in it.
-_LOW = np.tril_indices(NUM_INPUTS)
-_FROM_LOW = np.zeros((NUM_INPUTS, NUM_INPUTS), dtype=int)
-_FROM_LOW[_LOW] = _FROM_LOW.T[_LOW] = np.arange(len(_LOW[0]))
-
 # Length / l_opt beyond which a parallel element pulls (Ackermann & van den Bogert 2010).
 PARALLEL_START = 1.2
 PARALLEL_START_THIGH = 1.4
 
-
-@dataclass(frozen=True, kw_only=True)
-class MuscleSettings(Settings):
-    """Constants and variants of contraction and activation dynamics."""
-
-    tendon_strain: float = quantity(0.04, "-", 0.01, 0.12, "tendon strain at maximal force")
-    tendon_rounding: float = quantity(
-        0.03, "-", 0.002, 0.2, "d: rounds the tendon's infinite compliance at zero force"
-    )
-    pennation_model: str = choice(
-        "fixed_thickness",
-        ("fixed_thickness", "constant_angle"),
-        "whether the belly's thickness or the pennation angle is constant",
-    )
-    parallel_element: str = choice(
-        "none",
-        ("none", "quadratic"),
-        "passive force of the fibres; counts twice unless passive joint moments are reduced",
-    )
-    width: str = choice(
-        "half", ("half", "full"), "how to read the table's width of the force-length parabola"
-    )
-    force_length: str = choice(
-        "corrected",
-        ("corrected", "printed"),
-        "eq. (B.2) with l_ce / l_opt, or with the inverse ratio as printed",
-    )
-    force_velocity: str = choice(
-        "constant",
-        ("constant", "ft_dependent"),
-        "Hill constants: a_rel and b_rel, or 0.1 + 0.4 FT and 12 times that (Umberger)",
-    )
-    a_rel: float = quantity(0.41, "-", 0.1, 1.0, "Hill's A_rel")
-    b_rel: float = quantity(5.2, "1/s", 1.0, 15.0, "Hill's B_rel")
-    f_asympt: float = quantity(1.5, "-", 1.05, 2.0, "largest force in lengthening / isometric")
-    slope_factor: float = quantity(
-        1.0, "-", 1.0, 3.0, "eccentric over concentric slope of force-velocity at rest"
-    )
-    force_velocity_floor: float = quantity(
-        0.02, "-", 0.005, 0.1, "least force-velocity factor, so that activation stays finite"
-    )
-    activation_dynamics: str = choice(
-        "corrected",
-        ("corrected", "printed"),
-        "eq. (C.1): (u - a)(t1 u + t2) with t1 = 1/t_a - 1/t_d, or with the signs and the t1 as "
-        "printed, under which activation runs away from excitation",
-    )
-    time_constants: str = choice(
-        "ft_formula",
-        ("ft_formula", "fixed"),
-        "80 - 0.47 %FT and 90 - 0.56 %FT ms (Umberger 2003, eq. 4), or the two values below",
-    )
-    time_activation: float = quantity(0.050, "s", 0.005, 0.2, "t_a if fixed")
-    time_deactivation: float = quantity(0.065, "s", 0.005, 0.4, "t_d if fixed")
-    min_force: float = quantity(
-        0.0005, "f_max", 0.0, 0.05, "lower bound on muscle force in a gait program"
-    )
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        t_a, t_d = self.time_activation, self.time_deactivation
-        if not t_a <= t_d <= 2 * t_a:
-            # Else one activation rate belongs to two excitations, or to none.
-            allowed = f"between time_activation and twice that, {t_a:g} to {2 * t_a:g} [s]"
-            raise InvalidInput("time_deactivation", t_d, allowed)
-
-    def activation_times(self, fast_twitch: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Time constants (t_a, t_d) [s] of muscles by their fast-twitch fraction."""
-        if self.time_constants == "fixed":
-            one = np.ones_like(fast_twitch)
-            return self.time_activation * one, self.time_deactivation * one
-        return 0.080 - 0.047 * fast_twitch, 0.090 - 0.056 * fast_twitch
+# One triangle of second derivatives is computed; each place of the matrix in it.
+_LOW = np.tril_indices(NUM_INPUTS)
+_FROM_LOW = np.zeros((NUM_INPUTS, NUM_INPUTS), dtype=int)
+_FROM_LOW[_LOW] = _FROM_LOW.T[_LOW] = np.arange(len(_LOW[0]))
 
 
 class MuscleFunctions:
@@ -169,11 +98,19 @@ class MuscleFunctions:
         values, jacobian = self._derivatives(smoothing, self._checked(z))
         return values, jacobian.reshape(values.shape + (NUM_INPUTS,))
 
-    def hessian(self, z: np.ndarray, weights: np.ndarray, smoothing: float = 1.0) -> np.ndarray:
+    def hessian(
+        self,
+        z: np.ndarray,
+        weights: np.ndarray,
+        smoothing: float = 1.0,
+        corners: CornerSlopes | None = None,
+    ) -> np.ndarray:
         """Second derivatives of the weighted sum of the three outputs of each muscle.
 
         Args:
             weights: (..., num_muscles, 3).
+            corners: with them, corners curve as it takes to get across them (`walker.corners`),
+                and the slopes they have now are noted.
 
         Returns:
             (..., num_muscles, 6, 6), symmetric.
@@ -182,7 +119,16 @@ class MuscleFunctions:
         weights = np.ascontiguousarray(
             np.broadcast_to(weights, z.shape[:-1] + (NUM_OUTPUTS,)), float
         )
-        (low,) = self._curvatures(smoothing, z, weights)
+        if corners is None:
+            (low,) = self._curvatures(smoothing, z, weights)
+        elif corners.held is not None:
+            low, corners.held = self._crossing(smoothing, z, weights, corners.held)
+        else:
+            # Whatever is held, the first call finds the arguments; the slopes where they stay are
+            # those of the rounded corners.
+            held = np.zeros(z.shape[:-1] + (self._crossing.num_inputs(3),))
+            _, held = self._crossing(smoothing, z, weights, held)
+            low, corners.held = self._crossing(smoothing, z, weights, held)
         return low.take(_FROM_LOW, axis=-1)
 
     def states(self, z: np.ndarray) -> dict[str, np.ndarray]:
@@ -223,17 +169,17 @@ class MuscleFunctions:
             raise InvalidInput("shape of the muscle inputs", z.shape, allowed)
         return z
 
-    def _symbols(self) -> tuple[casadi.SX, casadi.SX, casadi.SX]:
+    def _symbols(self, math: Any = casadi) -> tuple[casadi.SX, casadi.SX, casadi.SX]:
         """Symbols of a muscle's constants (smoothing last) and inputs, and its outputs."""
         names = [field.name for field in fields(MuscleConstants)]
         c = casadi.SX.sym("c", len(names) + 1)
         z = casadi.SX.sym("z", NUM_INPUTS)
         muscle = MuscleConstants(*(c[i] for i in range(len(names))))
         smoothing = c[len(names)]
-        fibres = contract(casadi, muscle, self.settings, casadi.vertsplit(z), smoothing)
+        fibres = contract(math, muscle, self.settings, casadi.vertsplit(z), smoothing)
         a, a1 = fibres.activation, fibres.activation_rate
-        u = excitation(casadi, muscle, a, a1, smoothing, self.settings.activation_dynamics)
-        rate = energy_rate(casadi, muscle, self.energy, fibres, u, smoothing)
+        u = excitation(math, muscle, a, a1, smoothing, self.settings.activation_dynamics)
+        rate = energy_rate(math, muscle, self.energy, fibres, u, smoothing)
         off, full = excitation_bounds(muscle, self.settings, a, a1)
         return c, z, casadi.vertcat(off, full, muscle.mass * rate.total)
 
@@ -252,13 +198,24 @@ class MuscleFunctions:
         c, z, outputs = self._symbols()
         weights = casadi.SX.sym("w", NUM_OUTPUTS)
         hessian, _ = casadi.hessian(casadi.dot(weights, outputs), z)
-        low = casadi.vertcat(*(hessian[i, j] for i, j in zip(*_LOW, strict=True)))
-        return self._compile([c, z, weights], [low])
+        return self._compile([c, z, weights], [_low(hessian)])
+
+    @cached_property
+    def _crossing(self) -> ColumnwiseFunction:
+        corners = Corners()
+        c, z, outputs = self._symbols(corners)
+        weights = casadi.SX.sym("w", NUM_OUTPUTS)
+        hessian, held, holds = corners.hessian(casadi.dot(weights, outputs), z)
+        return self._compile([c, z, weights, held], [_low(hessian), holds])
 
     def _compile(self, inputs: list, outputs: list) -> ColumnwiseFunction:
         outputs = casadi.cse([casadi.densify(output) for output in outputs])
         table = np.column_stack(astuple(self.constants))
         return ColumnwiseFunction(casadi.Function("muscle", inputs, outputs), table)
+
+
+def _low(matrix: casadi.SX) -> casadi.SX:
+    return casadi.vertcat(*(matrix[i, j] for i, j in zip(*_LOW, strict=True)))
 
 
 def muscle_constants(

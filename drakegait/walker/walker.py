@@ -12,7 +12,8 @@ from drakegait.walker import coordinates
 from drakegait.walker.disorders import Disorder, check_walker
 from drakegait.walker.feet import FootGeometry
 from drakegait.walker.metabolics import EnergySettings
-from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings
+from drakegait.walker.muscle_dynamics import MuscleFunctions
+from drakegait.walker.muscle_settings import MuscleSettings
 from drakegait.walker.muscles import MuscleSet
 from drakegait.walker.passive_joints import PassiveJoints, PassiveSettings
 from drakegait.walker.skeleton import Skeleton

@@ -214,6 +214,30 @@ def test_corners_narrow_with_the_barrier_and_end_at_their_own_width(program: Gai
     assert widths[-1] == 1.0
 
 
+def test_steps_remember_slopes_of_corners_also_where_bounds_move(
+    program: GaitProgram, monkeypatch
+) -> None:
+    """A second step takes those of the first to curve across what it has crossed."""
+    crossed, exact = [], []
+    curvature = LagrangianHessian.local_curvature
+
+    def both(self, state, multipliers, objective, stiffness, corners):
+        plain = curvature(self, state, multipliers, objective, stiffness)
+        crossing = curvature(self, state, multipliers, objective, stiffness, corners)
+        crossed.append(crossing.physical.muscles)
+        exact.append(plain.physical.muscles)
+        return crossing
+
+    monkeypatch.setattr(LagrangianHessian, "local_curvature", both)
+    method = started(program, 1e-4)
+    moved = recentred(method.program, method.x, 0.0)
+    method.move_bounds(moved, CondensedSystem(moved, LagrangianHessian(moved)))
+    assert method.step()
+    more = [np.abs(crossed[k] - exact[k]).max() / np.abs(exact[k]).max() for k in range(2)]
+    assert more[0] <= 1e-9
+    assert more[1] > 1e-5
+
+
 def started(program: GaitProgram, barrier: float) -> InteriorPoint:
     """A solve from the reference after one step; 1e-6 is the last barrier parameter."""
     system = CondensedSystem(program, LagrangianHessian(program))

@@ -3,7 +3,8 @@
 import numpy as np
 
 from drakegait.walker.metabolics import EnergySettings
-from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings
+from drakegait.walker.muscle_dynamics import MuscleFunctions
+from drakegait.walker.muscle_settings import MuscleSettings
 from drakegait.walker.muscles import MuscleSet
 
 # Each option of the settings at least once.

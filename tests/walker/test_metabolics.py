@@ -7,7 +7,8 @@ import pytest
 from muscle_cases import random_inputs
 
 from drakegait.walker.metabolics import EnergySettings, energy_rate
-from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings, muscle_constants
+from drakegait.walker.muscle_dynamics import MuscleFunctions, muscle_constants
+from drakegait.walker.muscle_settings import MuscleSettings
 from drakegait.walker.muscles import MuscleSet
 
 MUSCLES = MuscleSet.load("spatial")

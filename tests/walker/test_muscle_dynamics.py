@@ -10,7 +10,8 @@ from scipy.optimize import brentq
 from drakegait.errors import InvalidInput
 from drakegait.walker.contraction import excitation, excitation_bounds, tendon_stretch
 from drakegait.walker.metabolics import EnergySettings
-from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings, muscle_constants
+from drakegait.walker.muscle_dynamics import MuscleFunctions, muscle_constants
+from drakegait.walker.muscle_settings import MuscleSettings
 from drakegait.walker.muscles import MuscleSet
 
 SPATIAL = MuscleSet.load("spatial")

@@ -5,7 +5,8 @@ import pytest
 from muscle_cases import VARIANTS, fibre_inputs, variant
 from scipy.integrate import solve_ivp
 
-from drakegait.walker.muscle_dynamics import MuscleFunctions, MuscleSettings
+from drakegait.walker.muscle_dynamics import MuscleFunctions
+from drakegait.walker.muscle_settings import MuscleSettings
 from drakegait.walker.muscles import MuscleSet
 
 SPATIAL = MuscleSet.load("spatial")

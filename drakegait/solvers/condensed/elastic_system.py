@@ -18,6 +18,7 @@ from drakegait.program.elastic import SHARE, ElasticProgram
 from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.solvers.condensed.sparse_structure import SparseStructure
 from drakegait.solvers.condensed.system import CondensedSystem
+from drakegait.walker.corners import CornerSlopes
 
 
 class ElasticSystem:
@@ -57,6 +58,7 @@ class ElasticSystem:
         stiffness: np.ndarray,
         diagonal: np.ndarray,
         jacobian: scipy.sparse.csr_array,
+        corners: CornerSlopes | None = None,
     ) -> None:
         """Evaluate second derivatives at `x` and build K; see `CondensedSystem`."""
         elastic, size, count = self._elastic, self._inner_size, self._inner_count
@@ -77,7 +79,7 @@ class ElasticSystem:
         soft = self._soft_equality
         compliance[elastic.ends[soft]] = give[soft]
         self._inner.linearise(
-            x[:size], multipliers[:count], of_rows, of_unknowns, own, compliance
+            x[:size], multipliers[:count], of_rows, of_unknowns, own, compliance, corners
         )
         # Where reserves are used with less than their D, p and n are stiffer.
         used = np.ones(len(elastic.ends))

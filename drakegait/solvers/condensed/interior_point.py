@@ -7,7 +7,8 @@ corrections. The algorithm is that of IPOPT (Waechter & Biegler 2006, equation n
 without a restoration phase (where no step is acceptable the method says so), and with these
 additions:
 
-- corners of the energy rate are rounded widely at first and narrow with mu (`smoothing`);
+- corners of the energy rate are rounded widely at first and narrow with mu (`smoothing`), and their
+  slopes are unknowns of their own (`walker.corners`);
 - what makes K positive definite is looked for in the muscles first (`Regularisation`);
 - steps bend at bounds instead of ending there (`bent_steps`), and those that a few bounds cut
   short nevertheless are corrected (`Targets`);
@@ -26,6 +27,7 @@ from drakegait.solvers.condensed.filter import Filter
 from drakegait.solvers.condensed.iterate import Multipliers, longest_step
 from drakegait.solvers.condensed.regularisation import Regularisation
 from drakegait.solvers.condensed.system import CondensedSystem
+from drakegait.walker.corners import CornerSlopes
 
 _TAU = 0.99  # smallest fraction to the boundary (8)
 _KAPPA_SIGMA = 1e10  # (16)
@@ -58,6 +60,7 @@ class InteriorPoint(BarrierProblem):
         self._bends = bends
         self._regularisation = Regularisation(system)
         self._filter = Filter(np.abs(self.primal).sum())
+        self._corners = CornerSlopes()
         self._last_change = np.inf  # of the cost by a full step, with this barrier parameter
         self._last_step = np.zeros(0)
 
@@ -89,7 +92,7 @@ class InteriorPoint(BarrierProblem):
         by_row = np.zeros(self.program.num_constraints)
         by_row[self.inequality] = stiffness[self.size :]
         self.system.linearise(
-            self.x, z.rows, by_row, stiffness[: self.size], self.jacobian
+            self.x, z.rows, by_row, stiffness[: self.size], self.jacobian, corners=self._corners
         )
         if not self._regularisation.factor():
             return False

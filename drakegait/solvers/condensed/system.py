@@ -35,6 +35,7 @@ from drakegait.solvers.condensed.local_variables import LocalVariables, hessian_
 from drakegait.solvers.condensed.reserves import Reserves
 from drakegait.solvers.condensed.sparse_structure import SparseStructure
 from drakegait.walker import feet
+from drakegait.walker.corners import CornerSlopes
 
 _ELIMINATED = (EquationsOfMotion, LeastSquaresMultipliers)
 _REFINEMENTS, _LAST_CORRECTION = 3, 1e-7  # at most; of the solution: the next is below 1e-14
@@ -102,6 +103,7 @@ class CondensedSystem:
         diagonal: np.ndarray,
         jacobian: scipy.sparse.csr_array,
         compliance: np.ndarray | None = None,
+        corners: CornerSlopes | None = None,
     ) -> None:
         """Evaluate second derivatives at `x` and build K.
 
@@ -110,9 +112,11 @@ class CondensedSystem:
             stiffness, diagonal, jacobian: see `Linearisation`.
             compliance: D, how far equations of motion and equality rows of no control point give
                 way for their multipliers (num_constraints,); default not.
+            corners: see `MuscleFunctions.hessian`.
         """
         state = self._program.state(x)
-        curvature = self._hessian.local_curvature(state, multipliers, self._share, stiffness)
+        weights = multipliers, self._share, stiffness
+        curvature = self._hessian.local_curvature(state, *weights, corners)
         elimination = LocalElimination.at(state, curvature)
         timing = self._program.timing
         bends = timing.curvature(multipliers[self._program.first_timing_row :])
@@ -149,8 +153,7 @@ class CondensedSystem:
         rows = jacobian[self._shared_inequalities][:, :size].toarray()
         few = np.flatnonzero(rows.any(axis=0))  # timing and placement
         rows = rows[:, few]
-        square = rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
-        matrix.add_corner(few, square)
+        matrix.add_corner(few, rows.T @ (stiffness[self._shared_inequalities][:, None] * rows))
         few = self._shared_equalities
         self._border = Border(jacobian[few][:, :size].toarray(), self.give[few])
         self.matrix = matrix
@@ -213,8 +216,8 @@ class CondensedSystem:
         """The share of L that K needs, after K + L was factorised."""
         convex = self.matrix.plus(self._lack(), 1.0)
         self._border.weigh(convex, self.matrix)
-        known = self._border.factor, self._flattest
-        share, self._flattest = least_share(self._lack(), convex, *known)
+        factor, before = self._border.factor, self._flattest
+        share, self._flattest = least_share(self._lack(), convex, factor, before)
         return share
 
     # Solve -------------------------------------------------------------------------------
@@ -268,8 +271,7 @@ class CondensedSystem:
         few = self._shared_equalities
         y = np.zeros(len(c))
         shared, y[few] = self._border.solve(reduced, c[few])
-        x = np.zeros(len(b))
-        x[:size] = shared
+        x = np.concatenate([shared, np.zeros(len(b) - size)])
         along = variables.shared(x, rows)[..., None]
         followed = by_shared if self.reserves is None else self.reserves.by_shared
         local = local + (followed @ along)[..., 0]
