@@ -16,9 +16,10 @@ from drakegait import rounds
 from drakegait.errors import InvalidInput, UnknownName
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
+from drakegait.program.starts import starts
 from drakegait.solve import solve
 from drakegait.solvers.condensed import iterate_to_end
-from drakegait.solvers.monitor import Progress
+from drakegait.solvers.condensed import solve as condensed_solve
 from drakegait.solvers.options import SOLVERS, SolverOptions
 from drakegait.study import GaitStudy
 
@@ -241,12 +242,25 @@ def test_events_go_further_than_their_first_bounds_let_them():
     assert last.violations(last.design.pack(found.values)).max() < 2e-3
 
 
-def test_a_solve_whose_events_went_far_starts_again_from_there(monkeypatch):
-    monkeypatch.setattr(iterate_to_end, "_MANY", 10)  # no walk is found in so few iterations
-    told: list[Progress] = []
-    found = solve(early_heel_off(), refine=False, time_limit=60.0, report=told.append)
+@pytest.mark.parametrize(("many", "much"), [(10, 1.0), (1000, 0.005), (1000, 1.0)])
+def test_a_solve_whose_events_go_far_starts_again_from_there(monkeypatch, many, much):
+    """After so many iterations, or when the cost has fallen so much."""
+    far = many == 10 or much < 1.0
+    start = starts(13)[12]  # its events move at the last barrier parameter
+    monkeypatch.setattr(iterate_to_end, "_MANY", many)
+    monkeypatch.setattr(iterate_to_end, "_MUCH", much)
+    ends: list[str] = []
+    real = condensed_solve.iterate
+
+    def noted(*args):
+        ended = real(*args)
+        ends.append(ended[2])
+        return ended
+
+    monkeypatch.setattr(condensed_solve, "iterate", noted)
+    found = solve(STUDY, starts=[start], refine=False, time_limit=60.0)
     assert found.converged
-    assert (told[0].round, told[-1].round) == (1, 2)
+    assert (ends[0] == iterate_to_end.FAR) == far
 
 
 def test_control_points_are_added_where_the_check_fails():

@@ -42,7 +42,8 @@ class InteriorPoint(BarrierProblem):
     """The iteration; call `step` until the errors are small.
 
     Args:
-        bends: whether steps bend at bounds, and turn back half way; others: see `BarrierProblem`.
+        bends: whether steps bend at bounds, turn back half way and take corners by slopes of their
+            own; others: see `BarrierProblem`.
     """
 
     def __init__(
@@ -92,7 +93,8 @@ class InteriorPoint(BarrierProblem):
         by_row = np.zeros(self.program.num_constraints)
         by_row[self.inequality] = stiffness[self.size :]
         self.system.linearise(
-            self.x, z.rows, by_row, stiffness[: self.size], self.jacobian, corners=self._corners
+            self.x, z.rows, by_row, stiffness[: self.size], self.jacobian,
+            corners=self._corners if self._bends else None,
         )
         if not self._regularisation.factor():
             return False

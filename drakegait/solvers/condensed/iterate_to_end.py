@@ -19,7 +19,9 @@ from drakegait.solvers.solution import Solution
 _COMPLEMENTARITY = 0.01  # tolerance, of that on optimality
 _LAST_BARRIER = 0.09  # of the tolerance on complementarity
 _NEAR_BOUND = 0.9  # of the reach of an event
-_MANY = 150  # iterations after bounds moved that end a run: the optimum has become a far one
+# Iterations after bounds moved, and part of the cost lost since they first did, that end a run: the
+# optimum has become a far one, and with the last barrier parameter steps are short.
+_MANY, _MUCH = 150, 0.005
 FAR = "events went far"
 
 
@@ -46,6 +48,7 @@ def iterate(
     monitor.step(method.x, 0)
     settled, stalled = Settled(options), Stalled()
     iterations, since_moved = 0, np.inf  # iterations since bounds moved along
+    cost_then = -np.inf  # when they first did
     while True:
         errors = method.errors(0.0)
         if (
@@ -70,14 +73,17 @@ def iterate(
             method.lower_barrier()
         if stalled.reached and not elastic:
             return iterations, "", "laws remain broken"
-        if since_moved == _MANY:
+        if since_moved == _MANY or method.cost < (1.0 - _MUCH) * cost_then:
             return iterations, "", FAR
         if not method.step():
             return iterations, "", "no acceptable step"
         iterations += 1
         monitor.step(method.x, iterations)
         if method.at_last_barrier and not elastic:
-            since_moved = 0 if _recentred(method, monitor) else since_moved + 1
+            since_moved += 1
+            if _recentred(method, monitor):
+                cost_then = method.cost if since_moved == np.inf else cost_then
+                since_moved = 0
         settled.after(method.cost, method.violation, method.barrier)
         stalled.after(method.violation, method.barrier)
 

@@ -54,17 +54,7 @@ def solve_condensed(
     first, push = (WARM_BARRIER, _WARM_PUSH) if warm else (FIRST_BARRIER, _PUSH)
     first = options.barrier_start or first
     push = min(push, first**0.5) if warm else push
-    found, method = _solved(program, x, options, monitor, first, push, known)
-    for _ in range(_MOST_RESTARTS):
-        if found.detail != FAR:
-            break
-        # With the last barrier parameter steps are short, and the optimum has moved far away.
-        spent = found.iterations
-        monitor.begin(method.program)
-        found, method = _solved(
-            method.program, method.x, options, monitor, WARM_BARRIER, _WARM_PUSH, None
-        )
-        found = replace(found, iterations=spent + found.iterations)
+    found, method = _found(program, x, options, monitor, first, push, known)
     if found.status:
         return found
     program = method.program
@@ -75,18 +65,42 @@ def solve_condensed(
         detail = f"{found.detail}; {least.detail}"
         return replace(least, iterations=spent, detail=detail, program=program)
     monitor.begin(program)
-    again, method = _solved(program, least.x, options, monitor, WARM_BARRIER, _WARM_PUSH, None)
+    again, method = _found(program, least.x, options, monitor, WARM_BARRIER, _WARM_PUSH)
     program, detail = method.program, f"{found.detail}; {least.detail}; {again.detail}"
+    spent += again.iterations
     if again.status:
-        return replace(again, iterations=spent + again.iterations, detail=detail)
-    return _by_ipopt(program, method.x, options, monitor, True, f"{detail}: on by ipopt-mumps")
+        return replace(again, iterations=spent, detail=detail)
+    detail = f"{detail}: on by ipopt-mumps"
+    last = _by_ipopt(program, method.x, options, monitor, True, detail)
+    return replace(last, iterations=spent + last.iterations)
 
 
-def _solved(
+def _found(
+    program: GaitProgram, x: np.ndarray, options: SolverOptions, monitor: Monitor, barrier: float,
+    push: float, known: Multipliers | None = None,
+) -> tuple[Solution, InteriorPoint]:  # fmt: skip
+    """A run, and others from where it ended as long as events go far.
+
+    The status is empty where there is no going on.
+    """
+    found, method = _run(program, x, options, monitor, barrier, push, known)
+    for _ in range(_MOST_RESTARTS):
+        if found.detail != FAR:
+            break
+        # With the last barrier parameter steps are short, and the optimum has moved far away.
+        spent = found.iterations
+        monitor.begin(method.program)
+        found, method = _run(
+            method.program, method.x, options, monitor, WARM_BARRIER, _WARM_PUSH, None
+        )
+        found = replace(found, iterations=spent + found.iterations)
+    return found, method
+
+
+def _run(
     program: GaitProgram, x: np.ndarray, options: SolverOptions, monitor: Monitor, barrier: float,
     push: float, known: Multipliers | None,
 ) -> tuple[Solution, InteriorPoint]:  # fmt: skip
-    """One run; its status is empty where there is no going on."""
     system = CondensedSystem(program, LagrangianHessian(program))
     method = InteriorPoint(program, system, x, barrier, last_barrier(options), push, known)
     iterations, status, detail = iterate(method, options, monitor)
