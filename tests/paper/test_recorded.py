@@ -56,7 +56,7 @@ EXPECTED: dict[str, tuple[str, ...]] = {
         "no",
         "no",
         "yes",
-        "yes",
+        "no clear change",
     ),
     "spatial-symmetric": ("no",),
     "formulation": (
