@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -94,12 +96,8 @@ def test_laws_that_cannot_hold_end_a_solve_with_the_walk_that_breaks_them_least(
     assert broken[0] == "average speed"
 
 
-@pytest.mark.solve
-def test_a_solve_that_got_stuck_goes_on_from_where_all_laws_hold(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    program, x = program_of(SMALL)
-    assert solve_least(program, x, Monitor(120.0)).status == ""
+def stuck_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The next solve says that it is stuck while it is far from obeying the laws."""
     stuck, once = Stalled.after, iter([True])
 
     def at_once(self: Stalled, violation: float, barrier: float) -> None:
@@ -108,10 +106,31 @@ def test_a_solve_that_got_stuck_goes_on_from_where_all_laws_hold(
 
     monkeypatch.setattr(Stalled, "after", at_once)
     monkeypatch.setattr(solve_module, "_by_ipopt", None)  # nothing is left to it
+
+
+@pytest.mark.solve
+@pytest.mark.parametrize("far", [False, True])
+def test_a_solve_that_got_stuck_goes_on_from_where_all_laws_hold(
+    monkeypatch: pytest.MonkeyPatch, far: bool
+) -> None:
+    """Also if its events go far on the way back."""
+    program, x = program_of(SMALL)
+    assert solve_least(program, x, Monitor(120.0)).status == ""
+    stuck_once(monkeypatch)
+    real, counts = solve_module.iterate, []
+
+    def counted(*args: Any) -> tuple[int, str, str]:
+        ended = real(*args)
+        counts.append(ended[0])
+        return (ended[0], "", solve_module.FAR) if far and len(counts) == 2 else ended
+
+    monkeypatch.setattr(solve_module, "iterate", counted)
     found = solved(program, x)
     assert found.status == "converged"
     assert "laws remain broken; on from where all laws hold" in found.detail
     assert program.violations(found.x).max() < 1e-2
+    assert len(counts) == (3 if far else 2)
+    assert found.iterations > sum(counts)  # those of the elastic program, too
 
 
 def test_a_limit_on_time_ends_the_way_out_too() -> None:
