@@ -60,7 +60,7 @@ class ColumnwiseFunction:
         self._ready: dict[int, _Interpreter | _Blocks] = {}
         self._sizes = [function.numel_out(i) for i in range(function.n_out())]
 
-    def num_inputs(self, argument: int) -> int:
+    def size_in(self, argument: int) -> int:
         """Size of an argument; the constants are number 0."""
         return self._function.numel_in(argument)
 

@@ -12,7 +12,7 @@ unknown of its own with w r = x, which is linearised and w eliminated. That leav
     P'' ~ (1 - w x / r) / (2 r),     w  <-  x / r + (1 - w x / r) dx / r   kept within -1..1
 
 for a step from x to x + dx. Where w = x / r this is P''; where a step has left w on the other side
-it is up to 1 / r, about what the chord across the corner has.
+it is up to 1 / r, twice what the chord across the corner has.
 """
 
 from __future__ import annotations

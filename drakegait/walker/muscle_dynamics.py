@@ -126,7 +126,7 @@ class MuscleFunctions:
         else:
             # Whatever is held, the first call finds the arguments; the slopes where they stay are
             # those of the rounded corners.
-            held = np.zeros(z.shape[:-1] + (self._crossing.num_inputs(3),))
+            held = np.zeros(z.shape[:-1] + (self._crossing.size_in(3),))
             _, held = self._crossing(smoothing, z, weights, held)
             low, corners.held = self._crossing(smoothing, z, weights, held)
         return low.take(_FROM_LOW, axis=-1)

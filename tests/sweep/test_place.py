@@ -65,7 +65,6 @@ def test_a_client_that_dask_cannot_close_hides_nothing(scheduler, monkeypatch):
     lost = pytest.raises(cluster.ClusterLost, match="as before")
     with lost, cluster.connected(None, scheduler, 1):
         raise cluster.ClusterLost("as before")
-    monkeypatch.undo()
 
 
 def test_a_worker_keeps_to_one_core_and_is_replaced_when_its_keeper_gives_up(monkeypatch):

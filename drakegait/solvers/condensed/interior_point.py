@@ -61,7 +61,7 @@ class InteriorPoint(BarrierProblem):
         self._bends = bends
         self._regularisation = Regularisation(system)
         self._filter = Filter(np.abs(self.primal).sum())
-        self._corners = CornerSlopes()
+        self._corners = CornerSlopes() if bends else None
         self._last_change = np.inf  # of the cost by a full step, with this barrier parameter
         self._last_step = np.zeros(0)
 
@@ -93,8 +93,7 @@ class InteriorPoint(BarrierProblem):
         by_row = np.zeros(self.program.num_constraints)
         by_row[self.inequality] = stiffness[self.size :]
         self.system.linearise(
-            self.x, z.rows, by_row, stiffness[: self.size], self.jacobian,
-            corners=self._corners if self._bends else None,
+            self.x, z.rows, by_row, stiffness[: self.size], self.jacobian, corners=self._corners
         )
         if not self._regularisation.factor():
             return False
@@ -167,6 +166,7 @@ class InteriorPoint(BarrierProblem):
         """
         dw, dy = direction
         longest = self._longest(dw)
+        straight = longest_step(*self.gaps(self.w), dw, self._fraction)
         theta = np.abs(self.primal).sum()
         phi = self.barrier_cost(self.w, self.cost)
         slope = float(self.gradient @ dw[: self.size] + push @ dw)
@@ -182,7 +182,6 @@ class InteriorPoint(BarrierProblem):
             worse = first and theta <= measures[0] < np.inf
             if worse and self._correct(primal, stiffness, push, theta, phi, slope, step):
                 return True
-            straight = longest_step(*self.gaps(self.w), dw, self._fraction)
             step = straight if first and straight < step else 0.5 * step
             first = False
         return False

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.program.gait_program import GaitProgram
-from drakegait.program.hessian_blocks import HEELS, HessianBlocks
+from drakegait.program.hessian_blocks import HEELS, NUM_LATE, HessianBlocks
+from drakegait.walker import feet
 
 
 @dataclass
@@ -86,6 +87,33 @@ class LocalVariables:
     def into(self, x: np.ndarray, local: np.ndarray) -> None:
         """Set the local unknowns in `x` to the physical `local`."""
         x[self.index[self.used]] = local[self.used] / self.scale[self.used]
+
+    def hessian(self, blocks: HessianBlocks, diagonal: np.ndarray) -> np.ndarray:
+        """Second derivatives by local unknowns (num, 14 + n, 14 + n), physical units, with the
+        barrier's `diagonal` (num_variables,)."""
+        num, count = self.used.shape
+        out = np.zeros((num, count, count))
+        which, rows = np.arange(count), np.arange(feet.NUM_ROWS)
+        out[:, rows, rows] = blocks.multipliers
+        out[:, HEELS, HEELS + 3] = out[:, HEELS + 3, HEELS] = blocks.heel_toe
+        out *= self.used[:, :, None] & self.used[:, None]
+        safe = np.where(self.used, self.index, 0)
+        scale = np.where(self.used, self.scale, np.inf)
+        out[:, which, which] += diagonal[safe] / scale**2
+        return out
+
+    def mixed_hessian(self, blocks: HessianBlocks, shared: int) -> np.ndarray:
+        """Second derivatives by local and shared unknowns (num, 14 + n, shared)."""
+        num, count = self.used.shape
+        n, late = count - feet.NUM_ROWS, shared - NUM_LATE
+        out = np.zeros((num, count, shared))
+        out[:, : feet.NUM_ROWS, : 3 * n : 3] = blocks.multiplier_motion
+        out[:, feet.NUM_ROWS :, : 3 * n : 3] = blocks.residual_motion
+        time = slice(late, late + blocks.multiplier_time.shape[2])
+        out[:, : feet.NUM_ROWS, time] = blocks.multiplier_time
+        out[:, feet.NUM_ROWS :, time] = blocks.residual_time
+        out *= self.used[:, :, None]
+        return out
 
 
 def hessian_times(blocks: HessianBlocks, arms: np.ndarray, change: Change) -> Change:

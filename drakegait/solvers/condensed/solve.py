@@ -87,7 +87,6 @@ def _found(
     for _ in range(_MOST_RESTARTS):
         if found.detail != FAR:
             break
-        # With the last barrier parameter steps are short, and the optimum has moved far away.
         spent = found.iterations
         monitor.begin(method.program)
         found, method = _run(

@@ -20,7 +20,6 @@ import scipy.sparse
 from drakegait.program.equations_of_motion import EquationsOfMotion
 from drakegait.program.excitation import Excitation
 from drakegait.program.gait_program import GaitProgram
-from drakegait.program.hessian_blocks import HEELS, NUM_LATE, HessianBlocks
 from drakegait.program.lagrangian_hessian import LagrangianHessian
 from drakegait.program.least_squares_multipliers import LeastSquaresMultipliers
 from drakegait.program.local_rows import DenseRows
@@ -115,15 +114,16 @@ class CondensedSystem:
             corners: see `MuscleFunctions.hessian`.
         """
         state = self._program.state(x)
-        weights = multipliers, self._share, stiffness
-        curvature = self._hessian.local_curvature(state, *weights, corners)
+        curvature = self._hessian.local_curvature(
+            state, multipliers, self._share, stiffness, corners
+        )
         elimination = LocalElimination.at(state, curvature)
         timing = self._program.timing
         bends = timing.curvature(multipliers[self._program.first_timing_row :])
         size, blocks, by_shared = self.num_shared, curvature.blocks, elimination.by_shared
-        late = by_shared.shape[2] - NUM_LATE
         # Without the shared unknowns' part in the local ones, then with it.
-        local, mixed = self._local_hessian(blocks, diagonal), self._mixed_hessian(blocks, late)
+        local = self._variables.hessian(blocks, diagonal)
+        mixed = self._variables.mixed_hessian(blocks, by_shared.shape[2])
         dense = own_blocks(blocks, by_shared.shape[2])
         for constraint, numbers in self._dense_rows:
             partials = constraint.partials(state)
@@ -153,7 +153,8 @@ class CondensedSystem:
         rows = jacobian[self._shared_inequalities][:, :size].toarray()
         few = np.flatnonzero(rows.any(axis=0))  # timing and placement
         rows = rows[:, few]
-        matrix.add_corner(few, rows.T @ (stiffness[self._shared_inequalities][:, None] * rows))
+        square = rows.T @ (stiffness[self._shared_inequalities][:, None] * rows)
+        matrix.add_corner(few, square)
         few = self._shared_equalities
         self._border = Border(jacobian[few][:, :size].toarray(), self.give[few])
         self.matrix = matrix
@@ -161,33 +162,6 @@ class CondensedSystem:
         self.at = Linearisation(
             jacobian, blocks, bends, stiffness, diagonal, elimination, local, mixed
         )
-
-    def _local_hessian(self, blocks: HessianBlocks, diagonal: np.ndarray) -> np.ndarray:
-        """Second derivatives by local unknowns (num, 14 + n, 14 + n), physical units."""
-        variables = self._variables
-        num, count = variables.used.shape
-        out = np.zeros((num, count, count))
-        which, rows = np.arange(count), np.arange(feet.NUM_ROWS)
-        out[:, rows, rows] = blocks.multipliers
-        out[:, HEELS, HEELS + 3] = out[:, HEELS + 3, HEELS] = blocks.heel_toe
-        out *= variables.used[:, :, None] & variables.used[:, None]
-        safe = np.where(variables.used, variables.index, 0)
-        scale = np.where(variables.used, variables.scale, np.inf)
-        out[:, which, which] += diagonal[safe] / scale**2
-        return out
-
-    def _mixed_hessian(self, blocks: HessianBlocks, late: int) -> np.ndarray:
-        """Second derivatives by local and shared unknowns (num, 14 + n, shared)."""
-        num, count = self._variables.used.shape
-        n = count - feet.NUM_ROWS
-        out = np.zeros((num, count, late + NUM_LATE))
-        out[:, : feet.NUM_ROWS, : 3 * n : 3] = blocks.multiplier_motion
-        out[:, feet.NUM_ROWS :, : 3 * n : 3] = blocks.residual_motion
-        time = slice(late, late + blocks.multiplier_time.shape[2])
-        out[:, : feet.NUM_ROWS, time] = blocks.multiplier_time
-        out[:, feet.NUM_ROWS :, time] = blocks.residual_time
-        out *= self._variables.used[:, :, None]
-        return out
 
     def _lack(self) -> CyclicBandMatrix:
         """L, what the muscles lack to be convex, as a part of K."""
@@ -216,8 +190,9 @@ class CondensedSystem:
         """The share of L that K needs, after K + L was factorised."""
         convex = self.matrix.plus(self._lack(), 1.0)
         self._border.weigh(convex, self.matrix)
-        factor, before = self._border.factor, self._flattest
-        share, self._flattest = least_share(self._lack(), convex, factor, before)
+        share, self._flattest = least_share(
+            self._lack(), convex, self._border.factor, self._flattest
+        )
         return share
 
     # Solve -------------------------------------------------------------------------------
@@ -271,7 +246,8 @@ class CondensedSystem:
         few = self._shared_equalities
         y = np.zeros(len(c))
         shared, y[few] = self._border.solve(reduced, c[few])
-        x = np.concatenate([shared, np.zeros(len(b) - size)])
+        x = np.zeros(len(b))
+        x[:size] = shared
         along = variables.shared(x, rows)[..., None]
         followed = by_shared if self.reserves is None else self.reserves.by_shared
         local = local + (followed @ along)[..., 0]
