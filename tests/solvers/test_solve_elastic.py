@@ -96,18 +96,6 @@ def test_laws_that_cannot_hold_end_a_solve_with_the_walk_that_breaks_them_least(
     assert broken[0] == "average speed"
 
 
-def stuck_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The next solve says that it is stuck while it is far from obeying the laws."""
-    stuck, once = Stalled.after, iter([True])
-
-    def at_once(self: Stalled, violation: float, barrier: float) -> None:
-        stuck(self, violation, barrier)
-        self.reached = violation > 1.0 and next(once, False)
-
-    monkeypatch.setattr(Stalled, "after", at_once)
-    monkeypatch.setattr(solve_module, "_by_ipopt", None)  # nothing is left to it
-
-
 @pytest.mark.solve
 @pytest.mark.parametrize("far", [False, True])
 def test_a_solve_that_got_stuck_goes_on_from_where_all_laws_hold(
@@ -116,7 +104,14 @@ def test_a_solve_that_got_stuck_goes_on_from_where_all_laws_hold(
     """Also if its events go far on the way back."""
     program, x = program_of(SMALL)
     assert solve_least(program, x, Monitor(120.0)).status == ""
-    stuck_once(monkeypatch)
+    stuck, once = Stalled.after, iter([True])
+
+    def at_once(self: Stalled, violation: float, barrier: float) -> None:
+        stuck(self, violation, barrier)
+        self.reached = violation > 1.0 and next(once, False)
+
+    monkeypatch.setattr(Stalled, "after", at_once)
+    monkeypatch.setattr(solve_module, "_by_ipopt", None)  # nothing is left to it
     real, counts = solve_module.iterate, []
 
     def counted(*args: Any) -> tuple[int, str, str]:
