@@ -136,6 +136,10 @@ class ElasticProgram:
         """x of the extended unknowns."""
         return extended[: self._size]
 
+    def as_walk(self, extended: np.ndarray) -> tuple[GaitProgram, np.ndarray]:
+        """The program that it is made of, and x."""
+        return self.program, self.unknowns(extended)
+
     def missing(self, extended: np.ndarray) -> np.ndarray:
         """p - n of each soft row, in its unit: above zero where it is too low (num_soft,)."""
         return self.spread(extended[self._size :])

@@ -9,6 +9,7 @@ wants), and `mathematical_program` writes the same rows as bindings of a Drake
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -105,7 +106,7 @@ class GaitProgram:
             return f"{feet.EVENT_NAMES[phase]}"
         return f"{feet.PHASE_NAMES[phase]} {share:.2f}"
 
-    @property
+    @cached_property
     def row_names(self) -> list[str]:
         """`"law | phase and share | joint, foot or muscle"` of every row."""
         names = []
@@ -246,9 +247,7 @@ class GaitProgram:
     def rows(self, x: np.ndarray) -> np.ndarray:
         """Scaled values of all rows (num_constraints,)."""
         state = self.state(x)
-        parts = [
-            constraint.values(state)[constraint.applies] for constraint in self.constraints
-        ]
+        parts = [constraint.values(state)[constraint.applies] for constraint in self.constraints]
         parts += [self.timing.values(x), *(r.values(x, self.state) for r in self.stride_rows)]
         return np.concatenate(parts)
 
@@ -281,19 +280,20 @@ class GaitProgram:
         rows = self.rows(x)
         return np.maximum(np.maximum(self.lower - rows, rows - self.upper), 0.0)
 
+    def as_walk(self, x: np.ndarray) -> tuple[GaitProgram, np.ndarray]:
+        """The program and its unknowns in which `x` is a walk: this one."""
+        return self, x
+
     def worst(self, x: np.ndarray, count: int = 3) -> list[Violation]:
         """The `count` rows that are violated most, in gait terms."""
         amounts = np.nan_to_num(self.violations(x), nan=np.inf)
         order = np.argsort(-amounts)[:count]
-        names = self.row_names
+        names, physical = self.row_names, amounts * self.row_scale
         return [
             Violation(
-                names[i],
-                names[i].split(" | ")[0],
-                float(amounts[i]),
-                float(amounts[i] * self.row_scale[i]),
+                names[i], names[i].split(" | ")[0], float(amounts[i]), float(physical[i]),
                 self.row_units[i],
             )
             for i in order
             if amounts[i] > 0.0
-        ]
+        ]  # fmt: skip

@@ -70,7 +70,6 @@ class Monitor:
         self.program: GaitProgram | None = None
         self.best: np.ndarray | None = None
         self._best_rank = (np.inf, np.inf)
-        self._row_names: list[str] = []
 
     def __enter__(self) -> Monitor:
         if threading.current_thread() is threading.main_thread():
@@ -95,7 +94,6 @@ class Monitor:
         self.round += 1
         self.iteration = 0
         self.best, self._best_rank = None, (np.inf, np.inf)
-        self._row_names = program.row_names
 
     def go_on(self, program: GaitProgram, x: np.ndarray) -> None:
         """The round goes on with a program of the same unknowns and rows, from `x`.
@@ -129,8 +127,7 @@ class Monitor:
         assert program is not None
         self.iteration = self.iteration + 1 if iteration is None else iteration
         cost, violations = program.cost(x), program.violations(x)
-        worst = int(np.argmax(violations))
-        violation = float(violations[worst])
+        violation = float(violations.max())
         # Below one per cent of a tolerance a lower cost counts, above it the violation.
         rank = (max(violation, 0.01), cost)
         if np.isfinite(cost) and np.isfinite(violation) and rank < self._best_rank:
@@ -138,9 +135,17 @@ class Monitor:
         now = self.elapsed
         if self._report is not None and now - self._last_report >= self._interval:
             self._last_report = now
-            name = self._row_names[worst] if violation > 1e-3 else ""
-            remaining = self._limit - now
-            self._report(
-                Progress(self.round, self.iteration, cost, violation, name, now, remaining)
-            )
+            self._report(self._progress(x, now))
         return self.stop_reason
+
+    def _progress(self, x: np.ndarray, now: float) -> Progress:
+        """Of the walk in `x`; where laws may break at a price, without the price."""
+        assert self.program is not None
+        walk, x = self.program.as_walk(x)
+        violations = walk.violations(x)
+        worst = int(np.argmax(violations))
+        violation = float(violations[worst])
+        name = walk.row_names[worst] if violation > 1e-3 else ""
+        return Progress(
+            self.round, self.iteration, walk.cost(x), violation, name, now, self._limit - now
+        )

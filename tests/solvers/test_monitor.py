@@ -10,6 +10,10 @@ import time
 import numpy as np
 import pytest
 
+from drakegait import GaitStudy
+from drakegait.program.elastic import ElasticProgram
+from drakegait.program.gait_program import GaitProgram
+from drakegait.program.guess import guess_from_reference
 from drakegait.solvers.monitor import Monitor, Progress
 
 
@@ -26,6 +30,9 @@ class Walk:
 
     def violations(self, x: np.ndarray) -> np.ndarray:
         return np.array([0.0, self.points[int(x[0])][1]])
+
+    def as_walk(self, x: np.ndarray) -> tuple[Walk, np.ndarray]:
+        return self, x
 
 
 def follow(*points: tuple[float, float], order=None) -> int:
@@ -132,3 +139,21 @@ def test_progress_is_not_told_at_every_iteration():
         monitor.step(np.array([0.0]))
     assert len(said) == 1
     assert monitor.iteration == 5
+
+
+def test_progress_is_that_of_the_walk_where_laws_may_break_at_a_price():
+    program = GaitProgram(GaitStudy.planar_symmetric(13).formulation())
+    x = guess_from_reference(program)
+    elastic = ElasticProgram.of(program)
+    said: list[Progress] = []
+    monitor = Monitor(100.0, said.append, interval=0.0)
+    monitor.begin(program)
+    monitor.step(x)
+    monitor.begin(elastic)
+    monitor.step(elastic.start(x))
+    plain, relaxed = said
+    assert elastic.cost(elastic.start(x)) > 2.0 * plain.cost
+    assert (relaxed.cost, relaxed.violation, relaxed.worst) == (
+        plain.cost, plain.violation, plain.worst,
+    )  # fmt: skip
+    assert plain.worst
