@@ -225,7 +225,7 @@ def table(results: dict[str, Any], brief: bool) -> str:
     ]
     others = [record for record in rows.values() if "status" not in record]
     columns: Columns = {
-        "walk": lambda row: f"`{row['command'].removeprefix('drakegait ')}`{row['with']}",
+        "walk": lambda row: f"`{_typed(row).removeprefix('drakegait ')}`{row['with']}",
         "first iteration [s]": lambda row: _number(row.get("first_iteration_s"), ".1f"),
         "wall [s]": lambda row: _number(row["wall_s"], ".0f" if row["wall_s"] > 30 else ".1f"),
         "asked [s]": lambda row: row.get("asked", "-"),
@@ -242,7 +242,7 @@ def table(results: dict[str, Any], brief: bool) -> str:
             del columns[name]
     parts = [_markdown(walks, columns), _pictures(rows)]
     if not brief:
-        named = {"command": lambda row: f"`{row['command']}`"}
+        named = {"command": lambda row: f"`{_typed(row)}`"}
         named |= {name: columns[name] for name in ("wall [s]", "memory [MiB]")}
         parts.append(_markdown(others, named))
         evaluation = results.get("evaluation", {}).items()
@@ -252,6 +252,13 @@ def table(results: dict[str, Any], brief: bool) -> str:
              "[ms]": lambda row: format(row["value"], ".1f")},
         ))  # fmt: skip
     return "\n\n".join([*filter(None, parts), _measured_on(results)])
+
+
+def _typed(record: dict[str, Any]) -> str:
+    """The command as it was typed, with the folders of the rows that it needs."""
+    command = record["command"]
+    fields = [field for _, field, _, _ in string.Formatter().parse(command) if field]
+    return command.format_map({field: f"out/bench/{field}" for field in fields})
 
 
 def _with(name: str) -> str:
