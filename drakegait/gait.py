@@ -226,7 +226,7 @@ class Gait:
             both[row] = self.splines.coefficients(sign * nodal)
             if self.study.symmetric:
                 image = signs[row] * np.roll(both[row], -count // 2)
-                mirror = _mirror_name(name)
+                mirror = coordinates.other_side(name)
                 if mirror == name:
                     both[row] = 0.5 * (both[row] + image)
                 else:
@@ -273,8 +273,3 @@ class Gait:
         from drakegait.summary import summarise
 
         return summarise(self)
-
-
-def _mirror_name(name: str) -> str:
-    swap = {"_r": "_l", "_l": "_r"}
-    return name[:-2] + swap[name[-2:]] if name[-2:] in swap else name

@@ -10,15 +10,18 @@ tolerances and constants. In a symmetric study both sides change together.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import TypeVar
 from xml.etree import ElementTree
 
 import numpy as np
 
 from drakegait.settings import by_name
 from drakegait.study import SETTINGS_GROUPS, GaitStudy
+from drakegait.study_rules import mirrored_limit, mirrored_mass
+from drakegait.walker.coordinates import TRANSLATIONS, other_side, without_side
 from drakegait.walker.muscle_dynamics import MuscleFunctions
 from drakegait.walker.muscles import MuscleSet
 from drakegait.walker.sdf_elements import named_element, parse_sdf, read_inertial, write_inertial
@@ -36,6 +39,7 @@ _ADDED_MASS, _CENTRE = 0.5, 0.01  # steps [kg], [m]
 # Away from the proximal joint, in the segment's frame.
 _DISTAL = {"hat": (0.0, 0.0, 1.0), "foot": (1.0, 0.0, 0.0)}
 _LEG_DISTAL = (0.0, 0.0, -1.0)
+_Item = TypeVar("_Item")
 
 
 @dataclass(frozen=True)
@@ -63,8 +67,8 @@ class Parameter:
 def parameters(study: GaitStudy) -> list[Parameter]:
     """All numbers of `study` that can change by a little without changing the kind of question."""
     return [
-        *_walk(study), *_body(study), *_added_masses(study), *_segments(study), *_muscles(study),
-        *_disorders(study), *_limits(study), *_constants(study),
+        *_walk(study), *_body(study), *_numbered(_added_masses(study)), *_segments(study),
+        *_muscles(study), *_disorders(study), *_numbered(_limits(study)), *_constants(study),
     ]  # fmt: skip
 
 
@@ -89,7 +93,7 @@ def _sides(study: GaitStudy, name: str) -> tuple[tuple[str, tuple[str, ...]], ..
     """What is named and all that change with it: a left thing follows the right in a mirror."""
     if not study.symmetric or name[-2:] not in ("_r", "_l"):
         return ((name, (name,)),)
-    return () if name.endswith("_l") else ((name[:-2], (name, f"{name[:-2]}_l")),)
+    return () if name.endswith("_l") else ((without_side(name), (name, other_side(name))),)
 
 
 # Walk and body ----------------------------------------------------------------------------------
@@ -116,26 +120,49 @@ def _body(study: GaitStudy) -> Iterator[Parameter]:
         yield Parameter(f"body {name}", "body", unit, value, step, change)
 
 
+def _together(
+    study: GaitStudy, items: Sequence[_Item], image: Callable[[_Item], _Item]
+) -> Iterator[tuple[int, ...]]:
+    """Positions of what changes together: in a mirror each item and its image."""
+    left = list(range(len(items)))
+    while left:
+        number = left.pop(0)
+        twins = [k for k in left if study.symmetric and items[k] == image(items[number])]
+        if not twins or image(items[number]) == items[number]:
+            yield (number,)
+        else:
+            left.remove(twins[0])
+            yield number, twins[0]
+
+
+def _with_items(
+    study: GaitStudy, statement: str, which: tuple[int, ...], name: str, value: float
+) -> GaitStudy:
+    """Another value `name` of the items of `statement` at the positions `which`."""
+    items = list(getattr(study, statement))
+    for k in which:
+        items[k] = dataclasses.replace(items[k], **{name: value})
+    return _changed(study, **{statement: tuple(items)})
+
+
+def _numbered(found: Iterable[Parameter]) -> Iterator[Parameter]:
+    """The same, with a number behind names that have been there before."""
+    seen: dict[str, int] = {}
+    for parameter in found:
+        count = seen[parameter.name] = seen.get(parameter.name, 0) + 1
+        name = parameter.name if count == 1 else f"{parameter.name} ({count})"
+        yield dataclasses.replace(parameter, name=name)
+
+
 def _added_masses(study: GaitStudy) -> Iterator[Parameter]:
     """Masses that are worn, at their points."""
-    seen = set()
-    for number, item in enumerate(study.added_masses):
-        label, segments = next(iter(_sides(study, item.segment)), ("", ()))
-        if not label or (label, item.mass) in seen:
-            continue
-        seen.add((label, item.mass))
-        which = [
-            k for k, other in enumerate(study.added_masses)
-            if k == number or (other.segment in segments[1:] and other.mass == item.mass)
-        ]  # fmt: skip
-
-        def change(value: float, which: list[int] = which) -> GaitStudy:
-            worn = list(study.added_masses)
-            for k in which:
-                worn[k] = dataclasses.replace(worn[k], mass=value)
-            return _changed(study, added_masses=tuple(worn))
-
-        name = f"mass worn on {label}"
+    worn = study.added_masses
+    for which in _together(study, worn, mirrored_mass):
+        item = worn[which[0]]
+        label = item.segment if len(which) == 1 else without_side(item.segment)
+        change = partial(_with_items, study, "added_masses", which, "mass")
+        place = "" if item.point is None else " at {:g}, {:g}, {:g} m".format(*item.point)
+        name = f"mass worn on {label}{place}"
         yield Parameter(name, "added mass", "kg", item.mass, _ADDED_MASS, change)
 
 
@@ -221,40 +248,30 @@ def _with_muscles(
 
 
 def _disorders(study: GaitStudy) -> Iterator[Parameter]:
-    for number, item in enumerate(study.disorders):
-        words = [
-            str(getattr(item, field.name))
-            for field in dataclasses.fields(item)  # type: ignore[arg-type]
-            if isinstance(getattr(item, field.name), str)
-        ]
-        for field in dataclasses.fields(item):  # type: ignore[arg-type]
-            value = getattr(item, field.name)
-            if not isinstance(value, float):
-                continue
-
-            def change(value: float, number: int = number, name: str = field.name) -> GaitStudy:
-                disorders = list(study.disorders)
-                disorders[number] = dataclasses.replace(disorders[number], **{name: value})
-                return _changed(study, disorders=tuple(disorders))
-
-            name = " ".join([item.kind, *words, field.name])
-            yield Parameter(name, "disorder", "", value, _SHARE * (abs(value) or 1.0), change)
+    stated = study.disorders
+    for which in _together(study, stated, lambda item: item.mirrored()):
+        item = stated[which[0]]
+        words = [item.kind, *item.target]
+        if hasattr(item, "side") and len(which) == 1:
+            words.append(item.side)
+        for field, value in item.numbers.items():
+            change = partial(_with_items, study, "disorders", which, field)
+            name, step = " ".join([*words, field]), _SHARE * (abs(value) or 1.0)
+            yield Parameter(name, "disorder", item.units[field], value, step, change)
 
 
 def _limits(study: GaitStudy) -> Iterator[Parameter]:
-    for number, item in enumerate(study.limits):
+    limits = study.limits
+    for which in _together(study, limits, mirrored_limit):
+        item = limits[which[0]]
+        label = item.coordinate if len(which) == 1 else without_side(item.coordinate)
         for end in ("low", "high"):
             value = float(getattr(item, end))
             if not np.isfinite(value):
                 continue
-
-            def change(value: float, number: int = number, end: str = end) -> GaitStudy:
-                limits = list(study.limits)
-                limits[number] = dataclasses.replace(limits[number], **{end: value})
-                return _changed(study, limits=tuple(limits))
-
-            unit = "m" if item.coordinate in ("hat_y", "hat_z") else "rad"
-            yield Parameter(f"{end} limit {item.coordinate}", "limit", unit, value, 0.05, change)
+            change = partial(_with_items, study, "limits", which, end)
+            unit = "m" if item.coordinate in TRANSLATIONS else "rad"
+            yield Parameter(f"{end} limit {label}", "limit", unit, value, 0.05, change)
 
 
 def _constants(study: GaitStudy) -> Iterator[Parameter]:

@@ -181,9 +181,10 @@ def _change(optimum: Optimum, parameter: Parameter) -> Functions | None:
     for offsets, weights in _SCHEMES:
         try:
             studies = [parameter.study(parameter.value + k * difference) for k in offsets]
+            programs = [_program(optimum, study) for study in studies]
         except InvalidInput:
             continue
-        parts = [optimum.functions(_program(optimum, study)) for study in studies]
+        parts = [optimum.functions(program) for program in programs]
         return Functions.combined(np.array(weights) / difference, parts)
     return None
 

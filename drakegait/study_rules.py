@@ -11,11 +11,12 @@ import numpy as np
 from drakegait.errors import InvalidInput
 from drakegait.program.design import RANGES
 from drakegait.program.formulation import JointLimit
+from drakegait.walker.coordinates import other_side, without_side
+from drakegait.walker.subject import AddedMass
 
 if TYPE_CHECKING:
     from drakegait.study import GaitStudy
 
-_OTHER = {"_r": "_l", "_l": "_r"}
 _BOTH = "the same on both sides of a symmetric model; take spatial or planar"
 
 
@@ -27,7 +28,7 @@ def check_limits(limits: Sequence[JointLimit]) -> None:
     """
     open_ranges: dict[str, tuple[float, float]] = {}
     for limit in limits:
-        base = limit.coordinate.removesuffix("_r").removesuffix("_l")
+        base = without_side(limit.coordinate)
         if base not in RANGES:
             continue
         low, high = open_ranges.get(limit.coordinate, RANGES[base])
@@ -52,21 +53,29 @@ def check_both_sides(study: GaitStudy) -> None:
     if not study.symmetric:
         return
     for item in study.added_masses:
-        point = item.point and (item.point[0], -item.point[1], item.point[2])
-        image = dataclasses.replace(item, segment=_mirror_name(item.segment), point=point)
-        if image not in study.added_masses:
+        if mirrored_mass(item) not in study.added_masses:
             raise InvalidInput("added mass", f"{item.mass:g} kg on {item.segment}", _BOTH)
     for what, stated in (
         ("strength", study.strength), ("muscle_changes", study.muscle_changes),
     ):  # fmt: skip
         for name, value in stated.items():
-            if stated.get(_mirror_name(name)) != value:
+            if stated.get(other_side(name)) != value:
                 raise InvalidInput(what, f"{value} for {name}", _BOTH)
     for item in study.limits:
-        image = dataclasses.replace(item, coordinate=_mirror_name(item.coordinate))
-        if image not in study.limits:
+        if mirrored_limit(item) not in study.limits:
             given = f"{item.low:g} to {item.high:g} of {item.coordinate}"
             raise InvalidInput("limit", given, _BOTH)
+
+
+def mirrored_mass(item: AddedMass) -> AddedMass:
+    """The same mass on the other side of the body."""
+    point = item.point and (item.point[0], -item.point[1], item.point[2])
+    return dataclasses.replace(item, segment=other_side(item.segment), point=point)
+
+
+def mirrored_limit(item: JointLimit) -> JointLimit:
+    """The same limit on the other side of the body."""
+    return dataclasses.replace(item, coordinate=other_side(item.coordinate))
 
 
 def check_number(name: str, value: Any, low: float, high: float, unit: str) -> None:
@@ -75,7 +84,3 @@ def check_number(name: str, value: Any, low: float, high: float, unit: str) -> N
     number = isinstance(value, kinds) and not isinstance(value, bool)
     if not number or not low <= value <= high:  # nan is in no range
         raise InvalidInput(name, value, f"a number from {low:g} to {high:g} [{unit}]")
-
-
-def _mirror_name(name: str) -> str:
-    return name[:-2] + _OTHER.get(name[-2:], name[-2:])

@@ -21,6 +21,7 @@ from drakegait.report.tornado import tornado
 from drakegait.sensitivities import Sensitivities, Sensitivity, sensitivities
 from drakegait.solve import solve
 from drakegait.study import GaitStudy
+from drakegait.walker import disorders as dis
 
 STUDY = GaitStudy.planar_symmetric(11, interior_points=(3, 2, 6, 5))
 # Near the optimum that one starts from, and so exactly that differences of solves mean something.
@@ -195,6 +196,18 @@ CASES = {
     "planar": GaitStudy.planar(12).with_added_mass("foot_r", 1.5),
     "planar-symmetric": STUDY,
     "spatial": GaitStudy.spatial(12).with_limit("knee_flexion_r", 0.0, 1.0),
+    "mirrored statements": GaitStudy.planar_symmetric(11)
+    .with_limit("knee_flexion_r", -0.1, 1.3)
+    .with_limit("knee_flexion_l", -0.1, 1.3)
+    .with_disorder(dis.Weakness("soleus", "r", 0.6), dis.Weakness("soleus", "l", 0.6))
+    .with_disorder(dis.Orthosis("both", 200, neutral=5), dis.Pain("foot", "both", 2))
+    .with_added_mass("foot_r", 1.0, (0.1, 0.0, 0.0))
+    .with_added_mass("foot_l", 1.0, (0.1, 0.0, 0.0)),
+    "one-sided": GaitStudy.planar(11)
+    .with_added_mass("foot_r", 1.0)
+    .with_added_mass("foot_r", 1.0, (0.1, 0.0, 0.0))
+    .with_added_mass("foot_r", 1.0, (0.1, 0.0, 0.0))
+    .with_disorder(dis.Prosthesis("l"), dis.LimitedRange("knee", "r", high=60)),
 }
 
 
@@ -246,6 +259,41 @@ def test_both_sides_of_a_mirror_change_together():
     assert heavier.walker.skeleton.total_mass == pytest.approx(weight + 2.0)
     ratio = by_name["strength soleus"].study(1.2).walker.muscles.f_max / STUDY.walker.muscles.f_max
     assert np.count_nonzero(ratio != 1.0) == 2
+
+
+def test_statements_of_both_sides_change_together_whatever_they_are():
+    study = CASES["mirrored statements"]
+    by_name = {p.name: p for p in parameters(study)}
+    for name, unit, value in (
+        ("high limit knee_flexion", "rad", 1.2), ("low limit knee_flexion", "rad", -0.05),
+        ("weakness soleus strength", "-", 0.7), ("orthosis both stiffness", "N m/rad", 210.0),
+        ("orthosis both neutral", "degrees", 4.0), ("pain foot both weight", "-", 3.0),
+        ("mass worn on foot at 0.1, 0, 0 m", "kg", 2.0),
+    ):  # fmt: skip
+        assert by_name[name].unit == unit
+        by_name[name].study(value).formulation()  # which refuses what is not the same on both sides
+    weaker = by_name["weakness soleus strength"].study(0.3).walker.muscles.f_max
+    ratio = weaker / study.walker.muscles.f_max
+    assert np.count_nonzero(np.isclose(ratio, 0.5)) == 2
+    assert not any("range" in p.name or not np.isfinite(p.value) for p in parameters(study))
+
+
+def test_each_thing_that_one_wears_or_has_is_a_number_of_its_own():
+    study = CASES["one-sided"]
+    by_name = {p.name: p for p in parameters(study)}
+    masses = [n for n in by_name if n.startswith("mass worn")]
+    assert masses == [
+        "mass worn on foot_r", "mass worn on foot_r at 0.1, 0, 0 m",
+        "mass worn on foot_r at 0.1, 0, 0 m (2)",
+    ]  # fmt: skip
+    for position, name in enumerate(masses):
+        changed = by_name[name].study(2.0).added_masses
+        assert [item.mass for item in changed] == [2.0 if k == position else 1.0 for k in range(3)]
+    assert "range knee_flexion r high" in by_name
+    assert "range knee_flexion r low" not in by_name  # open
+    stiffness = by_name["prosthesis l stiffness"]  # that of its category
+    assert stiffness.value == dis.Prosthesis("l").forefoot_stiffness
+    assert stiffness.study(300.0).disorders[0].forefoot_stiffness == 300.0
 
 
 def test_what_does_not_touch_the_body_shares_it():

@@ -22,12 +22,12 @@ from drakegait.infeasibility.laws import (
     RANGE,
     SIDES,
     SPEED,
-    without_side,
     words_of_limits,
 )
 from drakegait.infeasibility.place import Place
 from drakegait.study import GaitStudy
 from drakegait.walker import coordinates
+from drakegait.walker.coordinates import without_side
 from drakegait.walker.disorders import Asymmetry, LimitedRange, Weakness
 from drakegait.walker.feet import ContactSettings
 
@@ -184,7 +184,7 @@ def _range(relaxation: Relaxation, relaxed: Relaxed, law: str) -> list[Knob]:
             angle = motion[:, coordinates.names(kind).index(limit.coordinate)]
             low = max(low, limit.low - float(angle.min()))
             high = max(high, float(angle.max()) - limit.high)
-    factor = 0.01 if base in ("hat_y", "hat_z") else math.pi / 180.0
+    factor = 0.01 if base in coordinates.TRANSLATIONS else math.pi / 180.0
     needed = max(low, high)
     if needed <= 0.0:
         return []

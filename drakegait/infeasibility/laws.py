@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.errors import InvalidInput
-from drakegait.program.design import STEP_LENGTHS, STEP_WIDTHS, STRIDE_TIMES
+from drakegait.program.design import PHASE_DURATIONS, STEP_LENGTHS, STEP_WIDTHS, STRIDE_TIMES
 from drakegait.program.elastic import ElasticProgram
 from drakegait.program.formulation import JointLimit
 from drakegait.program.gait_program import GaitProgram
-from drakegait.program.timing import TimingRows
+from drakegait.walker.coordinates import TRANSLATIONS, without_side
 
 MUSCLES, SPEED, FRICTION, ASYMMETRY = "muscles", "speed", "friction", "asymmetry"
 MECHANICS = "mechanics"
@@ -126,7 +126,7 @@ def _words(program: GaitProgram) -> dict[str, tuple[str, bool]]:
     limited = {without_side(limit.coordinate): limit for limit in formulation.limits}
     ranges = {RANGE + base: (words_of_limits(formulation.limits, base), True) for base in limited}
     ratios = " and ".join(item.describe() for item in formulation.asymmetries)
-    shortest, longest = (10.0 * x for x in _phase_ends(program))
+    shortest, longest = PHASE_DURATIONS
     return {
         MUSCLES: ("the strength of the muscles", True),
         SPEED: (f"a speed of {formulation.speed:g} m/s", True),
@@ -147,11 +147,6 @@ def _words(program: GaitProgram) -> dict[str, tuple[str, bool]]:
     }
 
 
-def _phase_ends(program: GaitProgram) -> tuple[float, float]:
-    timing: TimingRows = program.timing
-    return float(timing.lower[1]) / 100.0, float(timing.upper[1]) / 100.0
-
-
 def words_of_limits(limits: Sequence[JointLimit], base: str) -> str:
     """The ranges of a joint's coordinate; of each side where the sides differ."""
     own = [limit for limit in limits if without_side(limit.coordinate) == base]
@@ -166,7 +161,7 @@ def words_of_limits(limits: Sequence[JointLimit], base: str) -> str:
 
 def _range_words(coordinate: str, low: float, high: float) -> str:
     base = without_side(coordinate)
-    factor, unit = (1.0, " m") if base in ("hat_y", "hat_z") else (180.0 / np.pi, " degrees")
+    factor, unit = (1.0, " m") if base in TRANSLATIONS else (180.0 / np.pi, " degrees")
     if not np.isfinite(low):
         ends = f"of at most {factor * high:.3g}{unit}"
     elif not np.isfinite(high):
@@ -174,8 +169,3 @@ def _range_words(coordinate: str, low: float, high: float) -> str:
     else:
         ends = f"between {factor * low:.3g} and {factor * high:.3g}{unit}"
     return f"{base.replace('_', ' ')} {ends}"
-
-
-def without_side(name: str) -> str:
-    """A name without its `_r` or `_l`."""
-    return name[:-2] if name[-2:] in ("_r", "_l") else name

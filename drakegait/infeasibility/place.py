@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.infeasibility.conflict import Relaxation, Relaxed
-from drakegait.infeasibility.laws import MUSCLES, SIDES, without_side
+from drakegait.infeasibility.laws import MUSCLES, SIDES
 from drakegait.program.gait_program import GaitProgram
 from drakegait.walker import coordinates, feet
+from drakegait.walker.coordinates import without_side
 
 _SATURATED = 0.9  # of full excitation or activation
 # An excitation that follows from a spline swings about its limit: it counts where it comes to it
@@ -178,8 +179,8 @@ def _when(program: GaitProgram, point: int, name: str) -> str:
     """Phase or event, and what the leg of `name` does."""
     phase, share = int(program.points.phases[point]), float(program.points.shares[point])
     words = feet.EVENT_NAMES[phase] if share == 0.0 else feet.PHASE_NAMES[phase]
-    side = next((end for end in ("_r", "_l") if end in name), "")
-    if not side:
+    side = name.split()[0][-2:]
+    if side not in SIDES:
         return words
     leg = (phase + (4 if side == "_l" else 0)) % feet.NUM_PHASES
     return f"{words}; the {SIDES[side]} leg {_LEG_DOES[leg]}"

@@ -16,14 +16,13 @@ import numpy as np
 from drakegait.measured.body_angles import ANGLES, BodyAngles, rotation_angles, rotation_matrix
 from drakegait.measured.notes import Notes
 from drakegait.measured.time_axis import Series
-from drakegait.walker.coordinates import index, names
+from drakegait.walker.coordinates import TRANSLATIONS, index, names
 from drakegait.walker.skeleton import Skeleton
 
 TRUNK_SHARE = np.array([0.5, 0.65, 0.8])
 """Share of the trunk in the HAT's tilt, list and rotation; the pelvis has the rest."""
 
 _STRAIGHT = np.radians(5.0)
-_TRANSLATIONS = ("hat_x", "hat_y", "hat_z")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -81,7 +80,7 @@ def model_posture(body: BodyAngles, skeleton: Skeleton, notes: Notes) -> Posture
         q[:, at[f"knee_flexion_{side}"]] = values[:, where[f"knee_{side}"]]
         q[:, at[f"ankle_dorsiflexion_{side}"]] = values[:, where[f"ankle_{side}"]]
     points = skeleton.contact_points(q)
-    q[:, [at[name] for name in _TRANSLATIONS]] = hips
+    q[:, [at[name] for name in TRANSLATIONS]] = hips
     series = Series(time=body.series.time, values=q, usable=body.series.usable)
     return Posture(
         series=series, points=points, hips=hips, place=body.place, lean=lean, heading=heading
@@ -99,7 +98,7 @@ def level_feet(posture: Posture, skeleton: Skeleton, pitch: dict[str, float]) ->
     for side, angle in pitch.items():
         q[:, at[f"ankle_dorsiflexion_{side}"]] -= angle
     still = q.copy()
-    still[:, [at[name] for name in _TRANSLATIONS]] = 0.0
+    still[:, [at[name] for name in TRANSLATIONS]] = 0.0
     series = Series(time=posture.time, values=q, usable=posture.series.usable)
     return Posture(
         series=series, points=skeleton.contact_points(still), hips=posture.hips,

@@ -6,6 +6,7 @@ import numpy as np
 
 from drakegait.gait import Gait
 from drakegait.report.curves import GaitCurves
+from drakegait.walker.coordinates import TRANSLATIONS
 from drakegait.walker.skeleton import GRAVITY
 
 ACTIVE = 0.10
@@ -16,7 +17,7 @@ LATE = 0.25
 
 def angle_names(gait: Gait) -> list[str]:
     """All coordinates that are angles."""
-    return [name for name in gait.coordinate_names if name not in ("hat_x", "hat_y", "hat_z")]
+    return [name for name in gait.coordinate_names if name not in TRANSLATIONS]
 
 
 def angles(gait: Gait, names: list[str]) -> np.ndarray:

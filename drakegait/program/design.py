@@ -27,7 +27,7 @@ RANGES = {
     "knee_flexion": (-0.15, 2.0),
     "ankle_dorsiflexion": (-0.9, 0.7),
 }
-TRANSLATIONS = {"hat_x": (-0.35, 0.35), "hat_y": (-0.1, 0.1), "hat_z": (0.35, 0.6)}
+_OF_HAT = {"hat_x": (-0.35, 0.35), "hat_y": (-0.1, 0.1), "hat_z": (0.35, 0.6)}
 
 STRIDE_TIMES = (0.5, 3.0)  # [s]
 PHASE_DURATIONS = (0.01, 0.40)  # [s], docs/formulation.md 6.1
@@ -59,9 +59,9 @@ def coordinate_bounds(kind: str, height: float) -> np.ndarray:
     """Lowest and highest value of each coordinate, plant signs (num_coordinates, 2)."""
     bounds = []
     for item in coordinates.coordinates(kind):
-        base = item.name.removesuffix("_r").removesuffix("_l")
-        if base in TRANSLATIONS:
-            low, high = TRANSLATIONS[base]
+        base = coordinates.without_side(item.name)
+        if base in _OF_HAT:
+            low, high = _OF_HAT[base]
             bounds.append((low * height, high * height))
         else:
             low, high = RANGES[base]

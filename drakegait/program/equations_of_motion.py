@@ -21,6 +21,7 @@ from drakegait.program.formulation import Formulation
 from drakegait.program.local_rows import DenseRows
 from drakegait.program.local_state import LocalState
 from drakegait.walker import feet
+from drakegait.walker.coordinates import TRANSLATIONS
 
 
 class EquationsOfMotion(DenseRows):
@@ -79,5 +80,5 @@ def _loads(names: tuple[str, ...]) -> np.ndarray:
             mask[i] = side == name[-2:]
         else:
             # A torque has no share in the force that moves the trunk.
-            mask[i, feet.NUM_ROWS :] = name not in ("hat_x", "hat_y", "hat_z")
+            mask[i, feet.NUM_ROWS :] = name not in TRANSLATIONS
     return mask

@@ -19,6 +19,7 @@ from drakegait.program.formulation import Formulation
 from drakegait.program.local_rows import DenseRows
 from drakegait.program.local_state import LocalState
 from drakegait.walker import feet
+from drakegait.walker.coordinates import TRANSLATIONS
 
 
 class LeastSquaresMultipliers(DenseRows):
@@ -40,7 +41,7 @@ class LeastSquaresMultipliers(DenseRows):
             other = "_l" if row_name.split()[0].endswith("_r") else "_r"
             for i, name in enumerate(formulation.walker.coordinate_names):
                 masks["residuals"][row, i] = not name.endswith(other)
-                translates = name in ("hat_x", "hat_y", "hat_z")
+                translates = name in TRANSLATIONS
                 masks["coordinates"][row, i] = not name.endswith(other) and not translates
         masks["time"][:, [2, 3]] = True
         self._declare(Pattern(**masks))

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from drakegait.settings import Settings
+from drakegait.walker.coordinates import TRANSLATIONS
 
 if TYPE_CHECKING:
     from drakegait.study import GaitStudy
@@ -61,7 +62,7 @@ def limits(study: GaitStudy) -> list[str]:
     """Joints that are kept within a range."""
     found = []
     for limit in study.limits:
-        turn = limit.coordinate not in ("hat_y", "hat_z")
+        turn = limit.coordinate not in TRANSLATIONS
         low, high = (math.degrees(x) if turn else x for x in (limit.low, limit.high))
         found.append(
             f"{spoken(limit.coordinate)} kept from {low:.3g} to {high:.3g} {'°' if turn else 'm'}"

@@ -99,7 +99,8 @@ def unit(axis: str) -> str:
         return _UNITS[axis]
     head, _, rest = axis.partition(".")
     if head in ("added_mass", "strength", "limit"):
-        return {"added_mass": "kg", "strength": "-", "limit": "deg"}[head]
+        angle = "m" if rest in coordinates.TRANSLATIONS else "deg"
+        return {"added_mass": "kg", "strength": "-", "limit": angle}[head]
     try:
         name = rest if head == "set" else axis
         return find({**SETTINGS_GROUPS, "subject": Subject}, name)[1].metadata.get("unit", "")

@@ -22,6 +22,20 @@ import numpy as np
 from drakegait.errors import UnknownName
 
 SKELETONS = ("spatial", "planar")
+TRANSLATIONS = ("hat_x", "hat_y", "hat_z")
+"""Names of the coordinates that are lengths [m]; all others are angles [rad]."""
+_OTHER_SIDE = {"_r": "_l", "_l": "_r"}
+
+
+def other_side(name: str) -> str:
+    """The name of the same thing on the other side; of the trunk's, the name itself."""
+    end = name[-2:]
+    return name[:-2] + _OTHER_SIDE[end] if end in _OTHER_SIDE else name
+
+
+def without_side(name: str) -> str:
+    """The name without `"_r"` or `"_l"` at its end."""
+    return name[:-2] if name[-2:] in _OTHER_SIDE else name
 
 
 @dataclass(frozen=True)
@@ -57,8 +71,6 @@ class Coordinate:
 
 
 def _coordinate(name: str, paper_name: str, anatomical_sign: int) -> Coordinate:
-    swap = {"_r": "_l", "_l": "_r"}
-    mirror_of = name[:-2] + swap[name[-2:]] if name[-2:] in swap else name
     # A reflection of y turns lateral motion and rotations about x and z over.
     lateral = paper_name[0] in "yag"
     return Coordinate(
@@ -66,7 +78,7 @@ def _coordinate(name: str, paper_name: str, anatomical_sign: int) -> Coordinate:
         paper_name=paper_name,
         kind="translation" if paper_name[0] in "xyz" else "rotation",
         anatomical_sign=anatomical_sign,
-        mirror_of=mirror_of,
+        mirror_of=other_side(name),
         mirror_sign=-1 if lateral else 1,
     )
 

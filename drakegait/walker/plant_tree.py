@@ -9,6 +9,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import BodyIndex
 
 from drakegait.errors import BadFile
+from drakegait.walker.coordinates import without_side
 from drakegait.walker.dynamics_derivatives import Tree, skew
 from drakegait.walker.sdf_elements import OWN_MODEL
 
@@ -38,7 +39,7 @@ def check_joints(plant: MultibodyPlant, names: Sequence[str]) -> np.ndarray:
     order = []
     for name in names:
         joint = plant.GetJointByName(name)
-        kind, axis = _AXES[name.removesuffix("_r").removesuffix("_l")]
+        kind, axis = _AXES[without_side(name)]
         if joint.type_name() != kind:
             raise BadFile(OWN_MODEL, f"joint {name!r} is {joint.type_name()}, not {kind}.")
         given = joint.revolute_axis() if kind == "revolute" else joint.translation_axis()

@@ -9,7 +9,7 @@ import pytest
 from infeasibility_cases import relaxation_of
 
 from drakegait.infeasibility.conflict import Relaxed
-from drakegait.infeasibility.place import Place, place_of, short_muscles
+from drakegait.infeasibility.place import Place, _when, place_of, short_muscles
 
 # Unsolved: solves of other tests leave their walk in a shared one.
 unsolved = functools.cache(relaxation_of.__wrapped__)
@@ -57,6 +57,22 @@ def test_the_instant_is_told_from_the_leg_that_lacks():
     assert 2.0 < place.percent < 10.0
     own = broken("muscles", name[:-1] + "r", -10.0)
     assert own.when == "right loading; the right leg takes the load"
+
+
+@pytest.mark.parametrize(
+    ("name", "leg"),
+    [
+        ("hip_rotation_l", "; the left leg pushes off"),
+        ("hip_rotation_r", "; the right leg takes the load"),
+        ("toe_r z", "; the right leg takes the load"),
+        ("hat_list", ""),
+        ("hat_rotation", ""),
+    ],
+)
+def test_the_leg_is_that_at_the_end_of_the_name(name, leg):
+    program = unsolved("weak").program
+    point = int(np.flatnonzero((program.points.phases == 0) & (program.points.shares > 0.0))[0])
+    assert _when(program, point, name) == f"right loading{leg}"
 
 
 def test_of_the_whole_stride_there_is_no_instant():

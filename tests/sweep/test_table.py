@@ -102,6 +102,8 @@ def test_differences_name_only_what_differs_and_fill_what_is_absent():
 def test_units_of_axes():
     names = ("speed", "added_mass.hat", "height", "set.friction", "contact.friction", "model")
     assert [axes.unit(name) for name in names] == ["m/s", "kg", "m", "-", "-", ""]
+    assert axes.unit("limit.knee_flexion_r") == "deg"
+    assert axes.unit("limit.hat_z") == "m"
 
 
 def test_the_expected_time_is_the_mean_over_the_cores(monkeypatch):

@@ -428,3 +428,9 @@ def test_the_mirrored_disorders_make_the_mirrored_walker(model):
     np.testing.assert_allclose(
         other.muscles.lengths(image[0])[:, which], one.muscles.lengths(q), atol=1e-12
     )
+
+
+def test_every_number_of_a_disorder_has_a_unit():
+    for kind in dis.KINDS.values():
+        numbers = {f.name for f in dataclasses.fields(kind) if f.type in ("float", "float | None")}
+        assert set(kind.units) == numbers, kind

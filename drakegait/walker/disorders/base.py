@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
@@ -50,9 +51,11 @@ class Disorder(ABC):
 
     Attributes:
         kind: name in files.
+        units: of the numbers that may differ by a little, by their names.
     """
 
     kind: ClassVar[str]
+    units: ClassVar[Mapping[str, str]] = {}
 
     @abstractmethod
     def describe(self) -> str:
@@ -68,6 +71,16 @@ class Disorder(ABC):
         """The sides it acts on, of `"r"` and `"l"`."""
         side = getattr(self, "side", "both")
         return ("r", "l") if side == "both" else (side,)
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Values of the numbers that may differ by a little; without those that are left open."""
+        stated = {name: getattr(self, name) for name in self.units}
+        return {
+            name: float(value)
+            for name, value in stated.items()
+            if value is not None and math.isfinite(value)
+        }
 
     def mirrored(self) -> Disorder:
         """The same on the other side of the body."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -39,6 +40,7 @@ class Asymmetry(Disorder):
     """
 
     kind: ClassVar[str] = "asymmetry"
+    units: ClassVar[Mapping[str, str]] = {"ratio": "-"}
     quantity: str
     ratio: float
 
@@ -80,6 +82,7 @@ class Pain(Disorder):
     """
 
     kind: ClassVar[str] = "pain"
+    units: ClassVar[Mapping[str, str]] = {"weight": "-"}
     where: str
     side: str
     weight: float = 1.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -66,6 +67,11 @@ class JointStiffness(_OfJoint):
     """
 
     kind: ClassVar[str] = "stiffness"
+    units: ClassVar[Mapping[str, str]] = {
+        "stiffness": "N m/rad",
+        "neutral": "degrees",
+        "damping": "N m s/rad",
+    }
     stiffness: float = 0.0
     neutral: float = 0.0
     damping: float = 0.0
@@ -106,6 +112,7 @@ class LimitedRange(_OfJoint):
     """
 
     kind: ClassVar[str] = "range"
+    units: ClassVar[Mapping[str, str]] = {"low": "degrees", "high": "degrees"}
     low: float = -math.inf
     high: float = math.inf
 
@@ -152,6 +159,13 @@ class Orthosis(Disorder):
     """
 
     kind: ClassVar[str] = "orthosis"
+    units: ClassVar[Mapping[str, str]] = {
+        "stiffness": "N m/rad",
+        "neutral": "degrees",
+        "plantar_stiffness": "N m/rad",
+        "damping": "N m s/rad",
+        "mass": "kg",
+    }
     side: str
     stiffness: float
     neutral: float = 0.0

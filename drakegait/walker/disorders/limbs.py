@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -40,6 +41,7 @@ class LegLength(Disorder):
     """
 
     kind: ClassVar[str] = "leg_length"
+    units: ClassVar[Mapping[str, str]] = {"change": "m"}
     segment: str
     side: str
     change: float
@@ -100,6 +102,13 @@ class Prosthesis(Disorder):
     """
 
     kind: ClassVar[str] = "prosthesis"
+    units: ClassVar[Mapping[str, str]] = {
+        "alignment": "degrees",
+        "stiffness": "N m/rad",
+        "shank_mass": "-",
+        "shank_centre": "-",
+        "foot_mass": "-",
+    }
     side: str
     category: int = _MIDDLE
     alignment: float = 0.0
@@ -127,6 +136,10 @@ class Prosthesis(Disorder):
         if self.stiffness is not None:
             return self.stiffness
         return _STIFFNESS * _STEP ** (self.category - _MIDDLE)
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        return {**super().numbers, "stiffness": self.forefoot_stiffness}
 
     def describe(self) -> str:
         where = "on both sides" if self.side == "both" else SIDE_WORDS[self.side]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -74,6 +75,7 @@ class Weakness(_OfMuscle):
     """
 
     kind: ClassVar[str] = "weakness"
+    units: ClassVar[Mapping[str, str]] = {"strength": "-"}
     strength: float = 0.5
 
     def __post_init__(self) -> None:
@@ -113,6 +115,7 @@ class Contracture(_OfMuscle):
     """
 
     kind: ClassVar[str] = "contracture"
+    units: ClassVar[Mapping[str, str]] = {"length": "-"}
     length: float = 0.9
 
     def __post_init__(self) -> None:
@@ -154,6 +157,7 @@ class Spasticity(_OfMuscle):
     """
 
     kind: ClassVar[str] = "spasticity"
+    units: ClassVar[Mapping[str, str]] = {"excitation": "-"}
     excitation: float = 0.1
 
     def __post_init__(self) -> None:
