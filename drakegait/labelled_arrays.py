@@ -8,7 +8,6 @@ dimension in the attribute `coordinates` of each array that they label.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drakegait.errors import BadFile
+from drakegait.whole_file import beside
 
 if TYPE_CHECKING:
     import h5netcdf
@@ -95,19 +95,11 @@ def write_netcdf(path: str | Path, groups: Mapping[str, LabelledArrays]) -> None
     path = Path(path)
     if path.is_dir():
         raise BadFile(path, "is a folder, not a file to write.")
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with h5netcdf.File(beside, "w") as file:
-            shared = groups[ROOT].write(file, {})
-            for name, content in groups.items():
-                if name != ROOT:
-                    content.write(file.create_group(name), shared)
-        os.replace(beside, path)
-    except OSError as error:
-        reason = error.strerror or str(error).splitlines()[0]
-        raise BadFile(path, f"cannot be written ({reason}).") from None
-    finally:
-        beside.unlink(missing_ok=True)
+    with beside(path) as part, h5netcdf.File(part, "w") as file:
+        shared = groups[ROOT].write(file, {})
+        for name, content in groups.items():
+            if name != ROOT:
+                content.write(file.create_group(name), shared)
 
 
 def _write_array(

@@ -9,14 +9,14 @@ ground reactions at the centres of pressure. The view travels with the walker.
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drakegait.errors import BadFile, InvalidInput
+from drakegait.errors import InvalidInput
 from drakegait.replay_page import page_of_one
+from drakegait.whole_file import write_text
 
 if TYPE_CHECKING:
     from pydrake.geometry import Meshcat
@@ -61,7 +61,7 @@ def replay(
     pieces = build(meshcat, gait, int(strides))
     meshcat.SetAnimation(animate(Film.of(gait), pieces, int(strides), size))
     if html is not None:
-        _write(Path(html), page_of_one(meshcat.StaticHtml(), gait))
+        write_text(html, page_of_one(meshcat.StaticHtml(), gait))
     return meshcat
 
 
@@ -75,13 +75,3 @@ def open_meshcat(port: int | None) -> Meshcat:
         return Meshcat(params)
     except RuntimeError as error:
         raise InvalidInput("port", port, f"a free one ({error})") from None
-
-
-def _write(path: Path, text: str) -> None:
-    part = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        part.write_text(text, encoding="utf-8")
-        part.replace(path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise BadFile(path, f"cannot be written ({error.strerror or error}).") from None

@@ -15,7 +15,7 @@ import pytest
 from gait_cases import reference_gait
 
 from drakegait import cli
-from drakegait.commands import constants, gait_files
+from drakegait.commands import constants
 from drakegait.commands import walk as walk_command
 from drakegait.commands.request import WalkRequest
 from drakegait.errors import BadFile
@@ -23,6 +23,7 @@ from drakegait.gait import Gait
 from drakegait.reference.reference import Reference
 from drakegait.study import MODELS, GaitStudy
 from drakegait.summary import CHECKED
+from drakegait.whole_file import write_json
 
 ROOT = Path(__file__).resolve().parents[1]
 TINY = ("--model", "planar-symmetric", "--nodes", "11")
@@ -395,7 +396,7 @@ def test_plot_and_replay_write_files(capsys, gait_file, tmp_path):
 
 def test_the_summary_is_valid_json_and_replaced_at_once(tmp_path, monkeypatch):
     path = tmp_path / "summary.json"
-    gait_files.write_summary({"a": float("nan"), "b": [1.0, float("inf")], "c": {"d": "x"}}, path)
+    write_json(path, {"a": float("nan"), "b": [1.0, float("inf")], "c": {"d": "x"}})
     assert json.loads(path.read_text()) == {"a": None, "b": [1.0, None], "c": {"d": "x"}}
 
     def full(*_, **__):
@@ -403,7 +404,7 @@ def test_the_summary_is_valid_json_and_replaced_at_once(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Path, "replace", full)
     with pytest.raises(BadFile, match="No space left"):
-        gait_files.write_summary({"a": 2.0}, path)
+        write_json(path, {"a": 2.0})
     assert [item.name for item in tmp_path.iterdir()] == ["summary.json"]
     assert json.loads(path.read_text())["a"] is None
 

@@ -9,13 +9,13 @@ import pytest
 from gait_cases import changed, reference_gait, restated
 
 from drakegait.check import check
-from drakegait.commands.disorder_options import READERS, read_disorders
 from drakegait.commands.walk import _who
 from drakegait.errors import DrakegaitError
 from drakegait.gait import Gait
 from drakegait.solve import solve
 from drakegait.study import GaitStudy
 from drakegait.walker import disorders as dis
+from drakegait.walker.disorders.reading import READERS, read_disorders
 
 
 def items(gait: Gait) -> dict:

@@ -22,11 +22,12 @@ _MODELS = _GROUND | {"walker", "transcription"}
 MAY_IMPORT = {
     "errors": set(),
     "settings": {"errors"},
-    "labelled_arrays": {"errors"},
+    "whole_file": {"errors"},
+    "labelled_arrays": {"errors", "whole_file"},
     "walker": _GROUND,
     "transcription": _GROUND,
     "reference": _MODELS | {"labelled_arrays"},
-    "measured": _MODELS | {"reference"},
+    "measured": _MODELS | {"reference", "whole_file"},
     "program": _MODELS | {"reference"},
     "study": _MODELS | {"reference", "program", "study_file", "study_rules"},
     "study_file": _MODELS | {"reference", "program", "study"},
@@ -36,9 +37,9 @@ MAY_IMPORT = {
 # Parts that start a solve. All others (gait, check, report, replay and their helpers) read a
 # finished gait and need no solver, only the record of how the solve ended.
 SOLVING = {
-    "__init__", "cli", "commands", "exact", "fidelity", "infeasibility", "paper", "rounds",
-    "solve", "sweep",
+    "__init__", "exact", "fidelity", "infeasibility", "paper", "rounds", "solve", "sweep",
 }  # fmt: skip
+ENTRANCES = {"cli", "commands"}  # where users come in; nothing else imports them
 SOLVER_RECORD = "drakegait.solvers.outcome"
 SOLVER_LIBRARIES = ("drakegait.solvers", "pydrake.solvers", "ipyopt")
 # The judges of a gait evaluate it on their own and do not look at the rows of the program.
@@ -71,12 +72,16 @@ def within(name: str, modules: tuple[str, ...]) -> bool:
 def forbidden(path: Path) -> list[str]:
     """The imports by which a file breaks the order."""
     own, names = part(path), imported(path)
-    if own in SOLVING:
+    if own in ENTRANCES:
         return []
+    entrances = tuple(f"drakegait.{name}" for name in ENTRANCES)
+    if own in SOLVING:
+        return [n for n in names if within(n, entrances)]
     if own in MAY_IMPORT:
         allowed = tuple(f"drakegait.{name}" for name in MAY_IMPORT[own] | {own})
         return [n for n in names if within(n, ("drakegait",)) and not within(n, allowed)]
-    banned = (*SOLVER_LIBRARIES, *(["drakegait.program"] if own in JUDGES else []))
+    rows = ("drakegait.program",) if own in JUDGES else ()
+    banned = (*entrances, *SOLVER_LIBRARIES, *rows)
     return [n for n in names if within(n, banned) and not within(n, (SOLVER_RECORD,))]
 
 

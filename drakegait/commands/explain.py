@@ -8,12 +8,13 @@ from typing import Any
 
 from rich.console import Console
 
-from drakegait.commands.gait_files import SUMMARY_FILE, gait_path, load_gait, write_summary
+from drakegait.commands.gait_files import SUMMARY_FILE, gait_path, load_gait
 from drakegait.commands.screen import ProgressDisplay, console
 from drakegait.errors import BadFile
 from drakegait.gait import Gait
 from drakegait.infeasibility.explain import MOST_REMEDIES, explain
 from drakegait.infeasibility.explanation import UNKNOWN, WALKS, Explanation
+from drakegait.whole_file import write_json
 
 EXPLANATION = "explanation"  # key in summary.json
 FEASIBLE_FILE, REMEDY_FILE = "feasible.nc", "remedy_{}.nc"
@@ -29,7 +30,7 @@ def explain_file(name: str, time_limit: float, remedies: int) -> int:
     found = explain_gait(screen, gait, folder, time_limit, remedies)
     summary = folder / SUMMARY_FILE
     if summary.is_file():
-        write_summary({**_read(summary), EXPLANATION: found.to_dict()}, summary)
+        write_json(summary, {**_read(summary), EXPLANATION: found.to_dict()})
     return NOTHING_KNOWN if found.verdict == UNKNOWN else 0
 
 

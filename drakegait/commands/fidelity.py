@@ -17,7 +17,7 @@ from drakegait.fidelity.contents import SECTIONS
 from drakegait.fidelity.published import Place
 from drakegait.paper.document import update
 from drakegait.paper.results import Results
-from drakegait.sweep.store import write_bytes
+from drakegait.whole_file import write_bytes
 
 PAGE, NUMBERS = "fidelity.html", "fidelity_results.json"
 DOCUMENT, PICTURES = "fidelity.md", "pictures"

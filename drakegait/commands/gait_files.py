@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import json
-import math
-import os
 import tempfile
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from drakegait.errors import BadFile
 from drakegait.gait import Gait
@@ -54,27 +49,3 @@ def writable_folder(name: str | Path) -> Path:
     if figures.exists() and not figures.is_dir():
         raise BadFile(figures, "is a file, but the folder of figures must go there.")
     return folder
-
-
-def write_summary(summary: Mapping[str, Any], path: Path) -> None:
-    """Write `summary.json`, beside it first and renamed when complete; raises BadFile."""
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        text = json.dumps(_finite(summary), indent=2, allow_nan=False)
-        beside.write_text(text + "\n", encoding="utf-8")
-        beside.replace(path)
-    except OSError as error:
-        raise BadFile(path, f"cannot be written ({error.strerror or error}).") from None
-    finally:
-        beside.unlink(missing_ok=True)
-
-
-def _finite(value: Any) -> Any:
-    """JSON knows no nan and no infinity: null."""
-    if isinstance(value, Mapping):
-        return {name: _finite(item) for name, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

@@ -19,7 +19,7 @@ from drakegait.paper.contents import CHAPTERS
 from drakegait.paper.results import Results
 from drakegait.paper.run import chapter_named
 from drakegait.paper.verdict import Verdict
-from drakegait.sweep.store import write_bytes
+from drakegait.whole_file import write_bytes
 
 PAGE, NUMBERS = "paper.html", "paper_results.json"
 _COLOURS = {Verdict.YES: "green", Verdict.NO: "red"}

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from drakegait.commands.constants import read_constants
-from drakegait.commands.disorder_options import READERS, Texts, read_disorders
 from drakegait.commands.gait_files import load_gait
 from drakegait.commands.unchanged import unchanged
 from drakegait.errors import BadFile, InvalidInput, UnknownName
@@ -22,6 +21,7 @@ from drakegait.solve import check_guess
 from drakegait.solvers.options import SolverOptions
 from drakegait.study import MODELS, SETTINGS_GROUPS, GaitStudy
 from drakegait.walker import coordinates
+from drakegait.walker.disorders.reading import READERS, Texts, read_disorders
 from drakegait.walker.subject import AddedMass, Subject
 
 _ADDED = "SEGMENT=KG or SEGMENT=KG@X,Y,Z with numbers [kg, m], for example foot_r=2.0"

@@ -16,7 +16,6 @@ from drakegait.commands.gait_files import (
     REPORT_FILE,
     SUMMARY_FILE,
     writable_folder,
-    write_summary,
 )
 from drakegait.commands.request import WalkRequest
 from drakegait.commands.screen import (
@@ -34,6 +33,7 @@ from drakegait.report.study_words import who
 from drakegait.solve import solve
 from drakegait.solvers.options import SolverOptions
 from drakegait.study import GaitStudy
+from drakegait.whole_file import write_json
 
 NOT_CONVERGED = 3
 EXPLAIN_LIMIT = 300.0  # [s] for the explanation of a walk that was not found
@@ -93,7 +93,7 @@ def _walk(
         spent = time.monotonic() - started
         found = _explain(screen, gait, folder, options.time_limit - spent)
         if found is not None:
-            write_summary({**gait.summary(), EXPLANATION: found.to_dict()}, folder / SUMMARY_FILE)
+            write_json(folder / SUMMARY_FILE, {**gait.summary(), EXPLANATION: found.to_dict()})
     if request.no_pictures:
         _warn_of_old(screen, folder, FIGURES_FOLDER, REPLAY_FILE)
     else:
@@ -107,7 +107,7 @@ def _walk(
 
 def _save(gait: Gait, folder: Path) -> list[str]:
     gait.save(folder / GAIT_FILE)
-    write_summary(gait.summary(), folder / SUMMARY_FILE)
+    write_json(folder / SUMMARY_FILE, gait.summary())
     return [GAIT_FILE, SUMMARY_FILE]
 
 

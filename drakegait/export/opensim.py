@@ -24,7 +24,7 @@ import numpy as np
 from drakegait.errors import InvalidInput
 from drakegait.export.bodies import TO_OPENSIM, read_parts
 from drakegait.export.osim_model import osim_model
-from drakegait.export.storage import new_folder, shown, write_storage, write_text
+from drakegait.export.storage import shown, write_storage
 from drakegait.export.xml_text import add, document, written
 from drakegait.gait import Gait
 from drakegait.loads import Loads, loads_along, muscle_inputs
@@ -32,6 +32,7 @@ from drakegait.motion import Motion
 from drakegait.sampling import LOADED, centre_of_pressure
 from drakegait.walker import coordinates
 from drakegait.walker.skeleton import GRAVITY
+from drakegait.whole_file import new_folder, write_text
 
 MODEL, GROUND, LOADS = "model.osim", "ground_reactions.mot", "external_loads.xml"
 COORDINATES, MOMENTS = "coordinates.mot", "inverse_dynamics.sto"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from drakegait.export.storage import new_folder, write_text
+from drakegait.whole_file import new_folder, write_text
 
 if TYPE_CHECKING:
     from drakegait.gait import Gait

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from drakegait.errors import BadFile
+from drakegait.whole_file import write_text
 
 DIGITS = 12
 
@@ -44,23 +44,3 @@ def write_storage(
 def shown(number: float) -> str:
     """A number as all tables spell it."""
     return f"{number:.{DIGITS}g}"
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a text file; raises BadFile if that fails."""
-    attempt(path, lambda: path.write_text(text, encoding="utf-8"))
-
-
-def new_folder(name: str | Path) -> Path:
-    """A folder that exists, made if need be; raises BadFile if that fails."""
-    folder = Path(name).expanduser()
-    attempt(folder, lambda: folder.mkdir(parents=True, exist_ok=True))
-    return folder
-
-
-def attempt(path: Path, action: Callable[[], object]) -> None:
-    """Do something with a file; raises BadFile with the system's reason."""
-    try:
-        action()
-    except OSError as error:
-        raise BadFile(path, f"cannot be written ({error.strerror}).") from None

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drakegait.export.storage import new_folder, write_text
 from drakegait.gait import Gait
+from drakegait.whole_file import new_folder, write_text
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,7 +11,7 @@ from drakegait.fidelity.sources import SOURCES
 from drakegait.paper.document import made, markdown
 from drakegait.paper.numbers import Missing, Numbers
 from drakegait.paper.results import Results
-from drakegait.sweep.store import write_bytes
+from drakegait.whole_file import write_bytes
 
 FORMAT = "drakegait fidelity results"
 BEGIN, END = "<!-- fidelity:begin -->", "<!-- fidelity:end -->"

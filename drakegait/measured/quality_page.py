@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from drakegait.errors import BadFile
 from drakegait.measured.quality import spoken
 from drakegait.walker.coordinates import SPATIAL, to_anatomical
 from drakegait.walker.feet import NUM_PHASES
+from drakegait.whole_file import write_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,14 +70,7 @@ def write_page(walk: ImportedWalk, path: str | Path) -> None:
         force_rows=quality.forces, penetration=quality.penetration, contacts=quality.contacts,
         changes=quality.changes, spoken=spoken,
     )  # fmt: skip
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        beside.write_text(text, encoding="utf-8")
-        beside.replace(path)
-    except OSError as error:
-        raise BadFile(path, f"cannot be written ({error.strerror or error}).") from None
-    finally:
-        beside.unlink(missing_ok=True)
+    write_text(path, text)
 
 
 def coordinate_figure(walk: ImportedWalk) -> Figure:

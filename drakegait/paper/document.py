@@ -10,7 +10,7 @@ from drakegait.paper.chapter import Chapter
 from drakegait.paper.claim import Finding
 from drakegait.paper.results import Results
 from drakegait.paper.verdict import Verdict
-from drakegait.sweep.store import write_bytes
+from drakegait.whole_file import write_bytes
 
 BEGIN, END = "<!-- paper:begin -->", "<!-- paper:end -->"
 GROUPS = {

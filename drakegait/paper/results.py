@@ -15,7 +15,7 @@ from drakegait.paper.chapter import Chapter
 from drakegait.paper.claim import Finding
 from drakegait.paper.numbers import Numbers
 from drakegait.sweep.result import SweepResult
-from drakegait.sweep.store import write_bytes
+from drakegait.whole_file import write_bytes
 
 FORMAT = "drakegait paper results"
 _COLUMNS = (

@@ -9,7 +9,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,6 +31,7 @@ from drakegait.report.comparison_tables import (
     rows,
 )
 from drakegait.report.curves import GaitCurves
+from drakegait.whole_file import new_folder, write_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -134,7 +134,7 @@ class Comparison:
         path = Path(path)
         if path.is_dir() or not path.parent.is_dir():
             raise BadFile(path, "is a folder." if path.is_dir() else "its folder does not exist.")
-        _write(path, self.html())
+        write_text(path, self.html())
         return path
 
     def save_csv(self, folder: str | Path) -> list[Path]:
@@ -143,15 +143,10 @@ class Comparison:
         Raises:
             BadFile: the folder cannot be made or written.
         """
-        folder = Path(folder)
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise BadFile(folder, f"cannot be made ({error.strerror or error}).") from None
-        paths = []
+        folder, paths = new_folder(folder), []
         for name, table in self.tables().items():
             paths.append(folder / f"{name}.csv")
-            _write(paths[-1], table.to_csv(index=False, float_format="%.6g"))
+            write_text(paths[-1], table.to_csv(index=False, float_format="%.6g"))
         return paths
 
 
@@ -207,13 +202,3 @@ def default_labels(gaits: Sequence[Gait]) -> tuple[str, ...]:
             short = f"gait {number + 1}"
         named.append(short if short not in named else f"{short} ({number + 1})")
     return tuple(named)
-
-
-def _write(path: Path, text: str) -> None:
-    part = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        part.write_text(text, encoding="utf-8")
-        part.replace(path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise BadFile(path, f"cannot be written ({error.strerror or error}).") from None

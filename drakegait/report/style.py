@@ -6,7 +6,6 @@ program that draws figures of its own.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drakegait.errors import BadFile
 from drakegait.report.curves import GaitCurves
+from drakegait.whole_file import beside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -193,15 +192,11 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
     paths = []
     for kind in FORMATS:
         path = folder / f"{name}.{kind}"
-        part = folder / f".{name}.{os.getpid()}.{kind}"
-        try:
+        with beside(path) as part:
             if kind == "png":
-                figure.savefig(part, dpi=_PNG_DPI, pil_kwargs={"compress_level": 3})
+                compressed = {"compress_level": 3}
+                figure.savefig(part, format=kind, dpi=_PNG_DPI, pil_kwargs=compressed)
             else:
-                figure.savefig(part, metadata={"Date": None})
-            part.replace(path)
-        except OSError as error:
-            part.unlink(missing_ok=True)
-            raise BadFile(path, f"cannot be written ({error.strerror or error}).") from None
+                figure.savefig(part, format=kind, metadata={"Date": None})
         paths.append(path)
     return paths

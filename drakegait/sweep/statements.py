@@ -21,7 +21,6 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from drakegait.commands.disorder_options import READERS
 from drakegait.errors import BadFile, InvalidInput, UnknownName
 from drakegait.reference.embedded import GAITS
 from drakegait.reference.netcdf_file import is_netcdf, read_subject
@@ -30,6 +29,7 @@ from drakegait.settings import find
 from drakegait.solvers.options import SolverOptions
 from drakegait.study import MODELS, SETTINGS_GROUPS, GaitStudy
 from drakegait.walker import coordinates
+from drakegait.walker.disorders.reading import READERS
 from drakegait.walker.subject import Subject
 
 _GROUPS = {**SETTINGS_GROUPS, "subject": Subject}

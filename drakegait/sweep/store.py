@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import os
 import socket
 from collections.abc import Iterator, Mapping
@@ -23,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from drakegait.errors import BadFile
+from drakegait.whole_file import new_folder, write_bytes, write_json
 
 GAIT, SUMMARY, FAILED, LOCK = "gait.nc", "summary.json", "failed.json", ".lock"
 
@@ -148,6 +148,7 @@ class Store:
         else:  # what is there belongs to another study or attempt
             for file in (SUMMARY, GAIT):
                 self.path(name, file).unlink(missing_ok=True)
+            new_folder(self.path(name).parent)
         record = {
             "key": key,
             "kind": kind,
@@ -162,6 +163,7 @@ class Store:
         self, name: str, key: str, gait: bytes, summary: Mapping[str, Any], guess: str | None
     ) -> None:
         digest = hashlib.sha256(gait).hexdigest()
+        new_folder(self.path(name).parent)
         write_bytes(self.path(name), gait)
         record = {"study": name, "key": key, "guess": guess, "sha256": digest}
         write_json(self.path(name, SUMMARY), {**summary, "sweep": record})
@@ -182,53 +184,12 @@ class Store:
         return "the study has changed since it was solved"
 
 
-def write_bytes(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all: beside it, to the disk, then renamed; raises BadFile."""
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with beside.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        beside.replace(path)
-        _sync_folder(path.parent)
-    except OSError as error:
-        beside.unlink(missing_ok=True)
-        raise BadFile(path, f"cannot be written ({error.strerror or error}).") from None
-
-
-def write_json(path: Path, content: Mapping[str, Any]) -> None:
-    """The same for JSON; numbers that are not finite become null."""
-    text = json.dumps(_finite(content), indent=2, allow_nan=False)
-    write_bytes(path, (text + "\n").encode())
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {name: _finite(item) for name, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
 def _read_json(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
     return content if isinstance(content, dict) else {}
-
-
-def _sync_folder(folder: Path) -> None:
-    """Make a rename last through a loss of power, where the system can open folders."""
-    if os.name != "posix":
-        return
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 def _lock(file: Any) -> bool:

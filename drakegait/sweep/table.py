@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drakegait.sweep import axes as sweep_axes
-from drakegait.sweep.store import write_bytes
+from drakegait.whole_file import write_bytes
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,7 +10,8 @@ import pytest
 from drakegait.study import GaitStudy
 from drakegait.sweep import axes, progress
 from drakegait.sweep.result import SweepResult
-from drakegait.sweep.store import State, write_json
+from drakegait.sweep.store import State
+from drakegait.whole_file import new_folder, write_json
 
 xr = pytest.importorskip("xarray")
 
@@ -26,7 +27,8 @@ def made_up(folder, grid: dict, failed=(), leave_out=()) -> SweepResult:
     for name, place in places.items():
         total = sum(x for x in place.values() if not isinstance(x, str))
         cost = {"metabolic_cost_of_transport_J_per_m": 300.0 + total, "deviation": 0.1 * total}
-        write_json(folder / name / "summary.json", {"cost": cost, "check": {"passed": False}})
+        summary = new_folder(folder / name) / "summary.json"
+        write_json(summary, {"cost": cost, "check": {"passed": False}})
         states[name] = State("failed", "of a test") if name in failed else State("done")
     return SweepResult(folder, dict.fromkeys(places, GaitStudy.planar()), places, states)
 

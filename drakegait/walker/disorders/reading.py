@@ -1,4 +1,4 @@
-"""The options of the panel "The disorder", read into disorders."""
+"""Disorders as they are typed: by the command line and in the file of a sweep."""
 
 from __future__ import annotations
 
