@@ -9,11 +9,11 @@ line's ``--set NAME=VALUE`` and its help.
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from drakegait.errors import InvalidInput, UnknownName
+from drakegait.quantities import check_number, plain
 
 
 def quantity(default: float, unit: str, low: float, high: float, meaning: str) -> Any:
@@ -41,7 +41,9 @@ class Settings:
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
-            _validate(field, getattr(self, field.name))
+            value = getattr(self, field.name)
+            _validate(field, value)
+            object.__setattr__(self, field.name, plain(value))
 
     def replace(self, **changes: Any) -> Any:
         """A copy with some values changed, validated again."""
@@ -115,6 +117,4 @@ def _validate(field: dataclasses.Field, value: Any) -> None:
         if not isinstance(value, bool):
             raise InvalidInput(field.name, value, "True or False")
     elif "unit" in meta:
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if not number or not math.isfinite(value) or not meta["low"] <= value <= meta["high"]:
-            raise InvalidInput(field.name, value, _allowed(meta))
+        check_number(field.name, value, meta["low"], meta["high"], meta["unit"])

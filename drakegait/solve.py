@@ -60,7 +60,10 @@ def solve(
     solver_of(options.solver)
     if options.derivatives != "analytic" and options.solver in ("ipopt", "snopt"):
         raise InvalidInput("solver", options.solver, "ipopt-mumps with finite differences")
-    points = several_starts(starts, seed) if isinstance(starts, int) else list(starts)
+    given = isinstance(starts, Sequence) and not isinstance(starts, str)
+    points = list(starts) if given else several_starts(starts, seed)
+    if not points:
+        raise InvalidInput("starts", starts, "a whole number, or starting points, at least one")
     with Monitor(options.time_limit, report) as monitor:
 
         def attempt(start: Start) -> Gait:

@@ -21,12 +21,13 @@ import numpy as np
 from drakegait.errors import InvalidInput, UnknownName
 from drakegait.program.formulation import Formulation, JointLimit, Tolerances
 from drakegait.program.variants import Variants
+from drakegait.quantities import check_number
 from drakegait.reference.deviation import DeviationSettings
 from drakegait.reference.reference import Reference
 from drakegait.reference.sequence import in_sequence
 from drakegait.settings import find, parse
 from drakegait.study_file import study_statements, study_to_dict
-from drakegait.study_rules import check_both_sides, check_limits, check_number
+from drakegait.study_rules import check_both_sides, check_limits
 from drakegait.transcription.schedule import Schedule
 from drakegait.transcription.splines import PeriodicQuintic
 from drakegait.walker import coordinates
@@ -234,9 +235,9 @@ class GaitStudy:
     @cached_property
     def reference_walk(self) -> Reference:
         """The walk that this one is compared with."""
-        walk = self.reference
-        if walk is None:
-            walk = Reference.embedded(self.skeleton_kind, self.subject, deviation=self.deviation)
+        walk = self.reference or Reference.embedded(self.skeleton_kind, self.subject)
+        if walk.deviation != self.deviation:
+            walk = dataclasses.replace(walk, deviation=self.deviation)
         return in_sequence(walk, self.variants.sequence)
 
     @property
@@ -263,12 +264,11 @@ class GaitStudy:
                 default those of the reference.
 
         Raises:
-            InvalidInput: a symmetric walker whose weights, strengths or limits have one side only.
+            InvalidInput: a symmetric walker with weights, strengths or limits on one side only.
         """
         check_both_sides(self)  # not at birth, so that one side can be stated after the other
         if event_centres is None:
-            fractions = np.asarray(self.reference_walk.phase_fractions)
-            event_centres = np.concatenate([[0.0], np.cumsum(fractions)[:-1]])
+            event_centres = np.append(0.0, np.cumsum(self.reference_walk.phase_fractions)[:-1])
         return Formulation(
             walker=self.walker,
             reference=self.reference_walk,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -76,11 +76,3 @@ def mirrored_mass(item: AddedMass) -> AddedMass:
 def mirrored_limit(item: JointLimit) -> JointLimit:
     """The same limit on the other side of the body."""
     return dataclasses.replace(item, coordinate=other_side(item.coordinate))
-
-
-def check_number(name: str, value: Any, low: float, high: float, unit: str) -> None:
-    """Refuse anything but a number from `low` to `high`."""
-    kinds = (int, float, np.integer, np.floating)
-    number = isinstance(value, kinds) and not isinstance(value, bool)
-    if not number or not low <= value <= high:  # nan is in no range
-        raise InvalidInput(name, value, f"a number from {low:g} to {high:g} [{unit}]")

@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all, and folders for them."""
+"""Files that are read and written whole or not at all, and folders for them."""
 
 from __future__ import annotations
 
@@ -52,6 +52,15 @@ def write_bytes(path: str | Path, content: bytes) -> None:
         file.flush()
         os.fsync(file.fileno())
     _sync_folder(path.parent)
+
+
+def read_text(path: str | Path) -> str:
+    """A text in UTF-8; raises BadFile."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "not text"
+        raise BadFile(path, f"cannot be read ({reason}).") from None
 
 
 def write_text(path: str | Path, text: str) -> None:

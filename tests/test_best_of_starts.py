@@ -75,6 +75,9 @@ def test_a_senseless_number_of_starts_is_refused_before_anything_is_solved():
         solve(STUDY, starts=0)
     with pytest.raises(InvalidInput, match="seed"):
         solve(STUDY, starts=2, seed=-1)
+    for none in ([], "3", True):
+        with pytest.raises(InvalidInput, match="starts"):
+            solve(STUDY, starts=none)
 
 
 @pytest.mark.solve

@@ -17,11 +17,12 @@ LONGEST = 300  # lines of a file that still holds one concept
 
 # A part is a module or folder right inside drakegait. Parts named here import, of drakegait, only
 # themselves and what is listed; dependencies point one way.
-_GROUND = {"errors", "settings"}
+_GROUND = {"errors", "quantities", "settings"}
 _MODELS = _GROUND | {"walker", "transcription"}
 MAY_IMPORT = {
     "errors": set(),
-    "settings": {"errors"},
+    "quantities": {"errors"},
+    "settings": {"errors", "quantities"},
     "whole_file": {"errors"},
     "labelled_arrays": {"errors", "whole_file"},
     "walker": _GROUND,

@@ -132,6 +132,19 @@ def test_every_constant_can_be_set_to_each_end_of_its_range(name):
         assert getattr(getattr(study.with_settings(**{name: value}), group), item.name) == value
 
 
+def test_the_rules_of_deviation_are_those_of_the_study_whatever_its_reference():
+    own = Reference.embedded("planar", Subject(), "planar")
+    usual, printed = GaitStudy.planar(reference=own), GaitStudy.planar(reference=own).with_settings(
+        sigma_rule="printed"
+    )
+    assert usual.reference_walk.deviation.sigma_rule != "printed"
+    expected = GaitStudy.planar().with_settings(sigma_rule="printed").reference_walk
+    np.testing.assert_array_equal(
+        printed.reference_walk.coordinate_sigma, expected.coordinate_sigma
+    )
+    assert (expected.coordinate_sigma != usual.reference_walk.coordinate_sigma).any()
+
+
 # Round trip --------------------------------------------------------------------------------
 
 

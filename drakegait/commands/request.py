@@ -5,24 +5,22 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from pathlib import Path
 
 from drakegait.commands.constants import read_constants
 from drakegait.commands.gait_files import load_gait
 from drakegait.commands.unchanged import unchanged
-from drakegait.errors import BadFile, InvalidInput, UnknownName
+from drakegait.errors import InvalidInput, UnknownName
 from drakegait.gait import Gait
 from drakegait.program.formulation import JointLimit
 from drakegait.program.starts import starts as several_starts
-from drakegait.reference.embedded import GAITS
-from drakegait.reference.netcdf_file import is_netcdf, read_subject
-from drakegait.reference.reference import Reference
+from drakegait.reference.named import measured_person, named_reference
 from drakegait.solve import check_guess
 from drakegait.solvers.options import SolverOptions
 from drakegait.study import MODELS, SETTINGS_GROUPS, GaitStudy
 from drakegait.walker import coordinates
 from drakegait.walker.disorders.reading import READERS, Texts, read_disorders
 from drakegait.walker.subject import AddedMass, Subject
+from drakegait.whole_file import read_text
 
 _ADDED = "SEGMENT=KG or SEGMENT=KG@X,Y,Z with numbers [kg, m], for example foot_r=2.0"
 _CHANGE = "MUSCLE.ENTRY=VALUE with a number, for example SOL.l_slack=0.245"
@@ -104,14 +102,16 @@ class WalkRequest:
             strength=dict(_strength(text) for text in self.strength or ()),
             planar_muscles=self.planar_muscles,
             muscle_changes=_muscle_changes(self.muscle or ()),
-            sdf=None if self.sdf is None else _text(self.sdf),
+            sdf=None if self.sdf is None else read_text(self.sdf),
             multipliers=self.multipliers,
             limits=tuple(_limit(text, self.model) for text in self.limit or ()),
             disorders=read_disorders({name: getattr(self, name) for name in READERS}),
             **{group: SETTINGS_GROUPS[group](**values) for group, values in constants.items()},
         )
         if self.reference is not None:
-            study = study.replace(reference=_reference(self.reference, study))
+            kind, subject = study.skeleton_kind, study.subject
+            walk = named_reference(self.reference, kind, subject, option="--reference")
+            study = study.replace(reference=walk)
         guess = None if self.guess is None else load_gait(self.guess)
         if guess is not None:
             check_guess(study, guess)
@@ -123,19 +123,10 @@ class WalkRequest:
 
     def _measured_person(self) -> tuple[Subject, float]:
         """Height, mass and speed of an imported reference, or the usual ones."""
-        if self.reference is None or not is_netcdf(self.reference):
-            return Subject(), _DEFAULT_SPEED
-        subject = read_subject(self.reference) or Subject()
         kind = self.model.removesuffix("-symmetric")
-        return subject, round(Reference.load(self.reference, kind).speed, 3)
-
-
-def _text(path: str) -> str:
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not text"
-        raise BadFile(path, f"cannot be read ({reason}).") from None
+        found = None if self.reference is None else measured_person(self.reference, kind)
+        subject, speed = found or (None, _DEFAULT_SPEED)
+        return subject or Subject(), speed
 
 
 def _default_nodes(model: str) -> int:
@@ -198,16 +189,3 @@ def _limit(text: str, model: str) -> JointLimit:
     if not ends[0] < ends[1]:
         raise InvalidInput(option, text, "a range whose low end is below its high end")
     return JointLimit(name, *ends)
-
-
-def _reference(given: str, study: GaitStudy) -> Reference:
-    kind, subject, deviation = study.skeleton_kind, study.subject, study.deviation
-    if given in GAITS or not (Path(given).suffix or Path(given).exists()):
-        try:
-            return Reference.embedded(kind, subject, given, deviation)
-        except UnknownName as error:
-            known = (*error.known, "or the path of a CSV file")
-            raise UnknownName("--reference", given, known) from None
-    if is_netcdf(given):
-        return dataclasses.replace(Reference.load(given, kind), deviation=deviation)
-    return Reference.from_table(given, kind=kind, subject=subject, deviation=deviation)

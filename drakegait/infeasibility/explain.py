@@ -31,8 +31,8 @@ from drakegait.infeasibility.place import Place, place_of, short_muscles
 from drakegait.infeasibility.remedies import MOST_FAILURES, RemedySearch
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
+from drakegait.quantities import check_number
 from drakegait.solvers.options import SolverOptions
-from drakegait.study_rules import check_number
 
 TIME_LIMIT = 600.0  # [s]
 MOST_REMEDIES = 2

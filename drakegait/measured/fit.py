@@ -30,7 +30,6 @@ from drakegait.walker.feet import (
     NUM_ROWS,
     VERTICAL_ROWS,
     YAW_ROWS,
-    FootGeometry,
     active_rows,
     footprints,
     left_print,
@@ -100,8 +99,7 @@ class StrideFit:
         self.phases = np.searchsorted(target.events, self.tau, side="right") - 1
         self.active = np.stack([active_rows(p, self.planar) for p in self.phases])
         self._prints = np.array([left_print(p) for p in self.phases])
-        neutral = skeleton.contact_points(np.zeros(skeleton.num_coordinates))
-        self._feet = FootGeometry(heel=float(neutral[0, 0]), toe=float(neutral[1, 0]))
+        self._feet = skeleton.foot
         self._length = target.placement.stride_length
         self._angles = rotations(skeleton.kind)
         trunk = np.array([name.startswith("hat_") for name in names(skeleton.kind)])

@@ -42,14 +42,14 @@ def stance_forces(
         if not candidates:
             raise BadFile("the force file", "holds no stance of one foot, from heel strike to toe "
                           "off, whose force was recorded completely.")  # fmt: skip
-        instant = stride.right_strike + strike * stride.duration
-        contact = min(candidates, key=lambda c: _distance(c, instant, stride.duration))
+        own = stride.stances[side]
+        contact = min(candidates, key=lambda c: abs(c.start - own[0]))
         if mirrored:
             notes.say(
                 f"No stance of the {_SIDE_NAMES[side]} foot was recorded completely: its force is "
                 "that of the other foot, mirrored."
             )
-        elif _distance(contact, instant, stride.duration) > stride.duration + _CLOSE:
+        elif min(abs(contact.start - instant) for instant in own) > _CLOSE:
             notes.say(
                 f"The force on the {_SIDE_NAMES[side]} foot is that of its stance from "
                 f"{contact.start:.2f} s, as the one in the stride was not recorded completely."
@@ -62,12 +62,6 @@ def stance_forces(
         forces[inside, 3 * foot : 3 * foot + 3] = values
     forces[:, [2, 5]] = np.maximum(forces[:, [2, 5]], 0.0)
     return forces
-
-
-def _distance(contact: Contact, instant: float, duration: float) -> float:
-    """How far a stance is from the one at `instant`; one stride earlier or later costs little."""
-    away = abs(contact.start - instant)
-    return min(away, duration + abs(away - duration)) if away > _CLOSE else away
 
 
 def _curve(contact: Contact) -> CubicSpline:

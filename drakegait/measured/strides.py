@@ -49,6 +49,18 @@ class Stride:
         """Right heel strike in the stride [s]."""
         return self.start if self.lead == "r" else self.other_strike
 
+    @property
+    def stances(self) -> dict[str, tuple[float, ...]]:
+        """Heel strikes of the stances of each foot that lie in the stride, wholly or in part [s].
+
+        The other foot may stand when the stride begins: that stance and its next share the cycle.
+        """
+        other = "l" if self.lead == "r" else "r"
+        return {
+            self.lead: (self.start,),
+            other: (self.other_strike, self.other_strike - self.duration),
+        }
+
     def share(self, time: float) -> float:
         """Fraction of the cycle since right heel strike, from 0 to 1, of an instant [s]."""
         return (time - self.right_strike) / self.duration % 1.0

@@ -16,6 +16,7 @@ from drakegait.errors import InvalidInput
 from drakegait.program.design import PHASE_DURATIONS
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import fit_forces, guess_from_reference, reference_values
+from drakegait.quantities import is_whole
 from drakegait.reference.reference import Reference
 from drakegait.transcription.design_vector import DesignValues
 
@@ -108,8 +109,7 @@ def starts(count: int, seed: int = 0) -> list[Start]:
         InvalidInput: a count below 1 or above `MOST_STARTS`, or a negative seed.
     """
     for name, value, low, high in (("starts", count, 1, MOST_STARTS), ("seed", seed, 0, 2**31)):
-        whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-        if not whole or not low <= value <= high:
+        if not is_whole(value) or not low <= value <= high:
             raise InvalidInput(name, value, f"a whole number from {low} to {high}")
     generator = np.random.default_rng(seed)
     levels = generator.uniform(*NOISE_LEVELS, size=count)

@@ -17,13 +17,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from drakegait.errors import BadFile, InvalidInput, UnknownName
-from drakegait.reference.embedded import GAITS
-from drakegait.reference.netcdf_file import is_netcdf, read_subject
+from drakegait.errors import InvalidInput, UnknownName
+from drakegait.reference.named import measured_person, named_reference
 from drakegait.reference.reference import Reference
 from drakegait.settings import find
 from drakegait.solvers.options import SolverOptions
@@ -31,6 +30,7 @@ from drakegait.study import MODELS, SETTINGS_GROUPS, GaitStudy
 from drakegait.walker import coordinates
 from drakegait.walker.disorders.reading import READERS
 from drakegait.walker.subject import Subject
+from drakegait.whole_file import read_text
 
 _GROUPS = {**SETTINGS_GROUPS, "subject": Subject}
 _ALIASES = ("height", "mass", "weights", "added_mass", "muscle", "limit", "set", "solver",
@@ -148,7 +148,7 @@ class Statements:
             "set": lambda: _set(plain, options, rest, value),
             "solver": lambda: options.update(solver=value),
             "time_limit": lambda: options.update(time_limit=value),
-            "sdf": lambda: plain.update(sdf=self._text(value)),
+            "sdf": lambda: plain.update(sdf=read_text(self._folder / str(value))),
             "strength": lambda: plain["strength"].update({rest: value}),
         }
         if head in special:
@@ -158,40 +158,21 @@ class Statements:
         elif head != "reference" and head not in _DISORDERS:
             plain[name] = value
 
-    def _text(self, name: object) -> str:
-        try:
-            return (self._folder / str(name)).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            reason = getattr(error, "strerror", None) or "not text"
-            raise BadFile(name, f"cannot be read ({reason}).") from None
-
     def _as_measured(self, start: GaitStudy, reference: object) -> GaitStudy:
         """The person and speed of an imported reference, where no statement says otherwise."""
-        if not isinstance(reference, str) or not is_netcdf(reference):
+        if not isinstance(reference, str):
             return start
-        path = self._folder / reference
-        speed = round(Reference.load(path, start.skeleton_kind).speed, 3)
-        return start.replace(subject=read_subject(path) or start.subject, speed=speed)
+        found = measured_person(self._folder / reference, start.skeleton_kind)
+        if found is None:
+            return start
+        return start.replace(subject=found[0] or start.subject, speed=found[1])
 
     def _reference(self, given: object, study: GaitStudy) -> Reference:
         """A reference, made once for all studies that agree on it."""
-        key = (str(given), study.skeleton_kind, study.subject, study.deviation)
+        key = (str(given), study.skeleton_kind, study.subject)
         if key not in self._references:
-            self._references[key] = self._read_reference(given, study)
+            self._references[key] = named_reference(*key, folder=self._folder)
         return self._references[key]
-
-    def _read_reference(self, given: object, study: GaitStudy) -> Reference:
-        kind, subject, deviation = study.skeleton_kind, study.subject, study.deviation
-        path = self._folder / str(given)
-        if given in GAITS or not (path.suffix or path.exists()):
-            try:
-                return Reference.embedded(kind, subject, str(given), deviation)
-            except UnknownName as error:
-                names = (*error.known, "or the path of a file")
-                raise UnknownName("reference", str(given), names) from None
-        if is_netcdf(path):
-            return replace(Reference.load(path, kind), deviation=deviation)
-        return Reference.from_table(path, kind=kind, subject=subject, deviation=deviation)
 
 
 def _disorders(statements: Mapping[str, Any]) -> tuple[Any, ...]:

@@ -10,7 +10,6 @@ so one constant matrix A = `moment_arms` gives both: l = l0 - A q and torque = A
 from __future__ import annotations
 
 import csv
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -18,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from drakegait.errors import InvalidInput, UnknownName
+from drakegait.quantities import is_number
 from drakegait.walker import coordinates
 from drakegait.walker.subject import Subject
 
@@ -248,19 +248,14 @@ def _table_column(entry: str) -> str:
     return _CHANGEABLE[entry]
 
 
-def _is_number(value: object) -> bool:
-    numeric = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
-    return numeric and math.isfinite(value)
-
-
 def _positive(name: str, value: float) -> float:
-    if not _is_number(value) or value <= 0:
+    if not is_number(value) or value <= 0:
         raise InvalidInput(name, value, "a number above 0")
     return value
 
 
 def _strength(name: str, value: float) -> float:
     low, high = STRENGTH_LIMITS
-    if not _is_number(value) or not low <= value <= high:
+    if not is_number(value) or not low <= value <= high:
         raise InvalidInput(f"strength of {name}", value, f"a factor from {low:g} to {high:g}")
     return value

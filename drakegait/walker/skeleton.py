@@ -21,14 +21,15 @@ from pydrake.multibody.plant import MultibodyPlant, MultibodyPlant_
 
 from drakegait.errors import BadFile, InvalidInput
 from drakegait.walker import coordinates
-from drakegait.walker.contact_kinematics import FeetGeometry
 from drakegait.walker.dynamics_derivatives import (
     Motion,
     inverse_dynamics,
     inverse_dynamics_derivatives,
 )
+from drakegait.walker.feet import FootGeometry
+from drakegait.walker.feet_of_model import read_feet
 from drakegait.walker.joint_tree import JointTree
-from drakegait.walker.model_file import CONTACT_FRAMES, model_sdf
+from drakegait.walker.model_file import model_sdf
 from drakegait.walker.plant_door import PlantDoor
 from drakegait.walker.plant_tree import check_joints, read_tree
 from drakegait.walker.rotation_sequence import sdf_in_sequence_123
@@ -81,7 +82,7 @@ class Skeleton:
             raise BadFile(OWN_MODEL, f"Drake cannot read the model: {error}") from None
         self._order = check_joints(self.plant, self.coordinates)
         self.tree = read_tree(self.plant, self.coordinates, GRAVITY)
-        self.feet_geometry = self._read_feet()
+        self.feet_geometry = read_feet(self.plant, self.tree, self.coordinates, toe_torque)
         self.total_mass = float(self.tree.masses.sum())
         self._double = self._open(self.plant, float)
         self._joints = JointTree(self.plant, self.coordinates, self.tree.names)
@@ -113,6 +114,12 @@ class Skeleton:
                 raise InvalidInput("sequence", sequence, "213 for a planar walker")
             sdf = sdf_in_sequence_123(sdf)
         return cls(sdf, kind, toe_torque)
+
+    @property
+    def foot(self) -> FootGeometry:
+        """Heel and toe along the sole, the same on both feet."""
+        heel, toe = self.feet_geometry.points[0, :, 0]
+        return FootGeometry(heel=float(heel), toe=float(toe))
 
     def with_sdf(self, text: str) -> Skeleton:
         """The same with other numbers in the text that it was made from."""
@@ -231,22 +238,6 @@ class Skeleton:
         return np.swapaxes(moved, -1, -2)
 
     # The door to Drake.
-
-    def _read_feet(self) -> FeetGeometry:
-        tree = self.tree
-        feet = np.array([tree.names.index(name) for name in ("foot_r", "foot_l")])
-        points = []
-        for name in CONTACT_FRAMES:
-            frame = self.plant.GetFrameByName(name)
-            if frame.body().name() != f"foot_{name[-1]}":
-                raise BadFile(OWN_MODEL, f"frame {name!r} is not fixed to foot_{name[-1]}.")
-            points.append(frame.GetFixedPoseInBodyFrame().translation())
-        moves = tree.moves[:, feet].T
-        if not np.all(moves.any(axis=0)):
-            name = self.coordinates[int(np.argmin(moves.any(axis=0)))]
-            raise BadFile(OWN_MODEL, f"joint {name!r} moves neither foot.")
-        heels_and_toes = np.array(points).reshape(2, 2, 3)
-        return FeetGeometry(tree.inner, moves, feet, heels_and_toes, self.toe_torque)
 
     def _open(self, plant: MultibodyPlant_, scalar: type) -> PlantDoor:
         bodies, moves_right = self.tree.names, self.feet_geometry.moves[0] > 0

@@ -7,12 +7,12 @@ moments of inertia with M H^2 (geometric similarity).
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from drakegait.errors import InvalidInput, UnknownName
+from drakegait.quantities import is_number
 from drakegait.settings import Settings, choice, quantity
 
 REFERENCE_HEIGHT = 1.80
@@ -80,7 +80,7 @@ class AddedMass:
     def __post_init__(self) -> None:
         if self.segment not in SEGMENTS:
             raise UnknownName("segment", self.segment, SEGMENTS)
-        if not _is_number(self.mass) or not 0 < self.mass <= MAX_ADDED_MASS:
+        if not is_number(self.mass) or not 0 < self.mass <= MAX_ADDED_MASS:
             allowed = f"a number above 0 and at most {MAX_ADDED_MASS:g} [kg]"
             raise InvalidInput("added mass", self.mass, allowed)
         if self.point is None:
@@ -89,15 +89,10 @@ class AddedMass:
             values = tuple(self.point)
         except TypeError:
             values = ()
-        if len(values) != 3 or not all(_is_number(x) and abs(x) <= 1.0 for x in values):
+        if len(values) != 3 or not all(is_number(x) and abs(x) <= 1.0 for x in values):
             allowed = "three numbers from -1 to 1 [m] in the segment's frame"
             raise InvalidInput("point of the added mass", self.point, allowed)
         object.__setattr__(self, "point", tuple(float(x) for x in values))
-
-
-def _is_number(value: object) -> bool:
-    kinds = (int, float, np.integer, np.floating)
-    return isinstance(value, kinds) and not isinstance(value, bool) and math.isfinite(value)
 
 
 @dataclass(frozen=True, eq=False)

@@ -108,12 +108,10 @@ class Walker:
         """Mask (num_coordinates,) of the angles among the coordinates."""
         return coordinates.rotations(self.skeleton.kind)
 
-    @cached_property
+    @property
     def foot(self) -> FootGeometry:
-        """Heel and toe along the sole, read from the skeleton."""
-        # In the neutral posture at the origin the ankles are above x = 0.
-        points = self.skeleton.contact_points(np.zeros(self.skeleton.num_coordinates))
-        return FootGeometry(heel=float(points[0, 0]), toe=float(points[1, 0]))
+        """Heel and toe along the sole."""
+        return self.skeleton.foot
 
     @cached_property
     def coupling(self) -> np.ndarray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -128,6 +130,12 @@ def test_impossible_subjects_are_refused(change):
         Subject(**change)
 
 
+def test_numbers_of_numpy_are_numbers():
+    subject = Subject(height=np.float32(1.75), mass=np.int64(70))
+    assert json.loads(json.dumps(subject.to_dict()))["mass"] == 70
+    assert type(subject.mass) is int
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -143,6 +151,14 @@ def test_impossible_subjects_are_refused(change):
         ('"hat_x" type="prismatic"', '"hat_x" type="revolute"', "'hat_x' is revolute"),
         ('name="heel_r" attached_to="foot_r"', 'name="heel_r" attached_to="shank_r"',
          "'heel_r' is not fixed to foot_r"),
+        ('"toe_l" attached_to="foot_l"><pose>0.142', '"toe_l" attached_to="foot_l"><pose>0.172',
+         "'toe_l' is at x = 172, z = -70.2 mm; it must be as on the other foot"),
+        ('"toe_r" attached_to="foot_r"><pose>0.142 0 -0.0702',
+         '"toe_r" attached_to="foot_r"><pose>0.142 0 -0.08',
+         "'toe_(r|l)' is at .*; it must be"),
+        ('"heel_r" attached_to="foot_r"><pose>-0.06 0',
+         '"heel_r" attached_to="foot_r"><pose>-0.06 0.02',
+         "'heel_r' is 20 mm beside its foot's sagittal plane"),
     ],
 )  # fmt: skip
 def test_own_models_that_do_not_fit_are_refused_by_name(old, new, words):

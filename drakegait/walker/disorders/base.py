@@ -10,7 +10,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from drakegait.errors import InvalidInput, UnknownName
+from drakegait.errors import UnknownName
+from drakegait.quantities import plain
 from drakegait.walker.joint_springs import JointSpring
 from drakegait.walker.muscles import MuscleSet
 from drakegait.walker.segment_edits import SegmentEdit
@@ -131,7 +132,7 @@ class Disorder(ABC):
 
 def to_plain(disorder: Disorder) -> dict[str, Any]:
     """As plain types that JSON can hold."""
-    values = {item.name: getattr(disorder, item.name) for item in fields(disorder)}  # type: ignore[arg-type]
+    values = {item.name: plain(getattr(disorder, item.name)) for item in fields(disorder)}  # type: ignore[arg-type]
     return {"kind": disorder.kind, **values}
 
 
@@ -154,11 +155,3 @@ def full_joint(joint: str) -> str:
     if name not in JOINTS:
         raise UnknownName("joint", joint, (*JOINTS, *_SHORT))
     return name
-
-
-def check_quantity(name: str, value: Any, low: float, high: float, unit: str) -> None:
-    """Refuse anything but a number from `low` to `high`."""
-    kinds = (int, float, np.integer, np.floating)
-    number = isinstance(value, kinds) and not isinstance(value, bool) and math.isfinite(value)
-    if not number or not low <= value <= high:
-        raise InvalidInput(name, value, f"a number from {low:g} to {high:g} [{unit}]")

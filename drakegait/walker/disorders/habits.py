@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from drakegait.errors import UnknownName
+from drakegait.quantities import check_number
 from drakegait.walker.disorders.base import (
     JOINTS,
     SIDE_WORDS,
     Disorder,
-    check_quantity,
     check_side,
     full_joint,
 )
@@ -48,7 +48,7 @@ class Asymmetry(Disorder):
         if self.quantity not in QUANTITIES:
             raise UnknownName("asymmetric quantity", self.quantity, tuple(QUANTITIES))
         name = f"ratio of {self.quantity.replace('_', ' ')}s, right over left"
-        check_quantity(name, self.ratio, *QUANTITIES[self.quantity], "-")
+        check_number(name, self.ratio, *QUANTITIES[self.quantity], "-")
 
     @property
     def target(self) -> tuple[str, ...]:
@@ -94,7 +94,7 @@ class Pain(Disorder):
             except UnknownName:
                 raise UnknownName("where it hurts", self.where, ("foot", *JOINTS)) from None
         check_side(self.side)
-        check_quantity(f"weight of pain in {self.where}", self.weight, 0.0, 100.0, "-")
+        check_number(f"weight of pain in {self.where}", self.weight, 0.0, 100.0, "-")
 
     @property
     def target(self) -> tuple[str, ...]:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from drakegait.errors import InvalidInput
+from drakegait.quantities import check_number
 from drakegait.walker.disorders.base import (
     SIDE_WORDS,
     Disorder,
-    check_quantity,
     check_side,
     full_joint,
 )
@@ -78,10 +78,10 @@ class JointStiffness(_OfJoint):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_quantity(f"stiffness of {self.joint}", self.stiffness, 0.0, _MOST_STIFFNESS,
-                       "N m/rad")  # fmt: skip
-        check_quantity(f"neutral angle of {self.joint}", self.neutral, -60.0, 120.0, "degrees")
-        check_quantity(f"damping of {self.joint}", self.damping, 0.0, 50.0, "N m s/rad")
+        check_number(f"stiffness of {self.joint}", self.stiffness, 0.0, _MOST_STIFFNESS,
+                     "N m/rad")  # fmt: skip
+        check_number(f"neutral angle of {self.joint}", self.neutral, -60.0, 120.0, "degrees")
+        check_number(f"damping of {self.joint}", self.damping, 0.0, 50.0, "N m s/rad")
 
     def describe(self) -> str:
         damper = f" and {self.damping:g} N m s/rad" if self.damping else ""
@@ -176,13 +176,13 @@ class Orthosis(Disorder):
     def __post_init__(self) -> None:
         check_side(self.side)
         most, unit = _MOST_STIFFNESS, "N m/rad"
-        check_quantity("stiffness of the orthosis", self.stiffness, 0.0, most, unit)
+        check_number("stiffness of the orthosis", self.stiffness, 0.0, most, unit)
         if self.plantar_stiffness is not None:
             name = "plantar stiffness of the orthosis"
-            check_quantity(name, self.plantar_stiffness, 0.0, most, unit)
-        check_quantity("neutral angle of the orthosis", self.neutral, -30.0, 30.0, "degrees")
-        check_quantity("damping of the orthosis", self.damping, 0.0, 10.0, "N m s/rad")
-        check_quantity("mass of the orthosis", self.mass, 0.0, 2.0, "kg")
+            check_number(name, self.plantar_stiffness, 0.0, most, unit)
+        check_number("neutral angle of the orthosis", self.neutral, -30.0, 30.0, "degrees")
+        check_number("damping of the orthosis", self.damping, 0.0, 10.0, "N m s/rad")
+        check_number("mass of the orthosis", self.mass, 0.0, 2.0, "kg")
 
     def describe(self) -> str:
         where = "on both ankles" if self.side == "both" else f"on the {SIDE_WORDS[self.side]} ankle"

@@ -10,8 +10,9 @@ from typing import ClassVar
 import numpy as np
 
 from drakegait.errors import InvalidInput, UnknownName
+from drakegait.quantities import check_number
 from drakegait.walker import coordinates
-from drakegait.walker.disorders.base import SIDE_WORDS, Disorder, check_quantity, check_side
+from drakegait.walker.disorders.base import SIDE_WORDS, Disorder, check_side
 from drakegait.walker.joint_springs import JointSpring
 from drakegait.walker.muscles import MuscleSet
 from drakegait.walker.segment_edits import LengthEdit, MassEdit, SegmentEdit
@@ -50,7 +51,7 @@ class LegLength(Disorder):
         if self.segment not in ("thigh", "shank"):
             raise UnknownName("segment of another length", self.segment, ("thigh", "shank"))
         check_side(self.side)
-        check_quantity(f"change of length of {self.segment}", self.change, -0.08, 0.08, "m")
+        check_number(f"change of length of {self.segment}", self.change, -0.08, 0.08, "m")
 
     @property
     def target(self) -> tuple[str, ...]:
@@ -122,13 +123,13 @@ class Prosthesis(Disorder):
         if isinstance(self.category, bool) or self.category not in CATEGORIES:
             allowed = f"a whole number from {CATEGORIES[0]} (soft) to {CATEGORIES[-1]} (stiff)"
             raise InvalidInput("category of the prosthesis", self.category, allowed)
-        check_quantity("alignment of the prosthesis", self.alignment, -10.0, 10.0, "degrees")
+        check_number("alignment of the prosthesis", self.alignment, -10.0, 10.0, "degrees")
         if self.stiffness is not None:
             name = "stiffness of the prosthesis"
-            check_quantity(name, self.stiffness, 50.0, 1000.0, "N m/rad")
+            check_number(name, self.stiffness, 50.0, 1000.0, "N m/rad")
         for name in ("shank_mass", "shank_centre", "foot_mass"):
             words = f"{name.replace('_', ' ')} with a prosthesis"
-            check_quantity(words, getattr(self, name), 0.3, 1.5, "-")
+            check_number(words, getattr(self, name), 0.3, 1.5, "-")
 
     @property
     def forefoot_stiffness(self) -> float:

@@ -11,12 +11,12 @@ from typing import ClassVar
 import numpy as np
 
 from drakegait.errors import InvalidInput
+from drakegait.quantities import check_number
 from drakegait.walker import coordinates
 from drakegait.walker.disorders.base import (
     SIDE_WORDS,
     Band,
     Disorder,
-    check_quantity,
     check_side,
 )
 from drakegait.walker.muscles import STRENGTH_LIMITS, MuscleSet
@@ -81,7 +81,7 @@ class Weakness(_OfMuscle):
     def __post_init__(self) -> None:
         super().__post_init__()
         name = f"strength left in a weak {self.muscle}"
-        check_quantity(name, self.strength, STRENGTH_LIMITS[0], 1.0, "-")
+        check_number(name, self.strength, STRENGTH_LIMITS[0], 1.0, "-")
 
     def describe(self) -> str:
         return f"{self._who} with {100.0 * self.strength:.3g} % of its strength"
@@ -120,7 +120,7 @@ class Contracture(_OfMuscle):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_quantity(f"fibre length of a short {self.muscle}", self.length, 0.5, 1.0, "-")
+        check_number(f"fibre length of a short {self.muscle}", self.length, 0.5, 1.0, "-")
 
     def describe(self) -> str:
         return f"{self._who} shortened to {100.0 * self.length:.3g} %"
@@ -163,7 +163,7 @@ class Spasticity(_OfMuscle):
     def __post_init__(self) -> None:
         super().__post_init__()
         name = f"smallest excitation of a spastic {self.muscle}"
-        check_quantity(name, self.excitation, 0.0, 0.5, "-")
+        check_number(name, self.excitation, 0.0, 0.5, "-")
 
     def describe(self) -> str:
         return f"{self._who} excited to {100.0 * self.excitation:.3g} % at least"
