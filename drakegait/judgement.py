@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SLACK = 2.0  # times the tolerance, between control points
 EXCITATION_SLACK = 0.05
 GRIP_SLACK = 0.02  # of the friction that the ground can hold
-LEAST_LOAD = 0.01  # of body weight: a foot that bears less tells nothing about friction
+PULL_SLACK = 0.01  # of body weight that a point may pull at the ground
 ENERGY_TOLERANCE = 0.01
 SPEED_TOLERANCE = 0.002  # [m/s]
 PERIODICITY_TOLERANCE = 1e-6
@@ -213,7 +213,7 @@ def ground_forces(judged: Judged) -> list[CheckItem]:
         judged.worst("free_moment_excess_Nm", "free moment beyond grip", twist, "N m", spare,
                      names),
         judged.worst("normal_force_min_N", "smallest vertical force", loaded, "N",
-                     -LEAST_LOAD * judged.body_weight, feet.POINT_NAMES, largest=False),
+                     -PULL_SLACK * judged.body_weight, feet.POINT_NAMES, largest=False),
         *torques,
     ]  # fmt: skip
 

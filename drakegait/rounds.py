@@ -97,6 +97,7 @@ class Rounds:
         self.solver_time += coarser.solver_time
         if coarser.solution.status != "converged" and self.monitor.stop_reason is None:
             return None
+        self.refinements += coarser.refinements
         self.refinements.append(
             f"{nodes} -> {self.study.nodes} spline nodes, after {coarser.iterations} iterations"
         )

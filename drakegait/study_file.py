@@ -28,7 +28,6 @@ def study_to_dict(study: GaitStudy) -> dict[str, Any]:
             plain[name] = value.to_dict()
     plain["strength"] = dict(study.strength)
     plain["muscle_changes"] = {key: dict(new) for key, new in study.muscle_changes.items()}
-    plain["muscle_changes"] = {key: dict(new) for key, new in study.muscle_changes.items()}
     plain["added_masses"] = [dataclasses.asdict(item) for item in study.added_masses]
     plain["limits"] = [dataclasses.asdict(item) for item in study.limits]
     plain["disorders"] = [to_plain(item) for item in study.disorders]

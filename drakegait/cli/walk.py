@@ -95,7 +95,7 @@ def walk(
         "Example: friction=0.4. Repeatable.")] = None,
     solver: Annotated[str | None, option(
         "--solver", panel=_WAY, metavar="SOLVER",
-        help="condensed (interior point on a dense core), ipopt-mumps (IPOPT with MUMPS), or "
+        help="condensed (interior point of our own), ipopt-mumps (IPOPT with MUMPS), or "
         "Drake's own ipopt or snopt. Default: condensed.")] = None,
     multipliers: Annotated[str, option(
         "--multipliers", panel=_WAY, metavar="KIND",

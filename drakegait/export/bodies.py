@@ -98,7 +98,7 @@ def read_parts(skeleton: Skeleton) -> tuple[Part, ...]:
             chain, parent = _chain(plant, joints, body, segments)
             if parent not in origins:
                 continue
-            freedoms, origin = _freedoms(chain, context, signs, plant, name)
+            freedoms, origin = _freedoms(chain, context, signs, name)
             if origin is None:
                 origin = plant.EvalBodyPoseInWorld(context, body).translation()
             origins[name] = origin
@@ -123,7 +123,7 @@ def _chain(plant: MultibodyPlant, joints: dict, body: RigidBody, segments: dict)
             return chain[::-1], "ground"
 
 
-def _freedoms(chain: list, context, signs: dict, plant: MultibodyPlant, name: str) -> tuple:
+def _freedoms(chain: list, context, signs: dict, name: str) -> tuple:
     """Coordinates of a chain of joints and the point where they meet, in our axes."""
     freedoms, centre = [], None
     for joint in chain:

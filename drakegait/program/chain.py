@@ -9,7 +9,7 @@ and the placement. With the basis rows b of the splines,
 
 and the control point's tau and the stride time T enter through the same
 quantities. Muscles, which depend on few coordinates each, have a chain rule
-of their own in `excitation` and `energy`.
+of their own in `excitation`, which `local_costs` shares.
 """
 
 from __future__ import annotations

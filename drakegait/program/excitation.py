@@ -36,7 +36,7 @@ class MuscleChain:
     it spans, through the same three basis rows each.
     """
 
-    def __init__(self, formulation: Formulation, points: ControlPoints):
+    def __init__(self, formulation: Formulation):
         self.arms = formulation.walker.muscles.moment_arms
         self.muscle_of_span, self.coordinate_of_span = np.nonzero(self.arms)
         self.arm_of_span = self.arms[self.muscle_of_span, self.coordinate_of_span]
@@ -94,7 +94,7 @@ class Excitation(LocalRows):
             self.lower[::2] = -_lowest_rates(formulation.walker) / _TYPICAL_RATE
         self.upper = np.where(np.arange(num) % 2 == 0, np.inf, 0.0)
         self.applies = np.ones((points.num, num), dtype=bool)
-        self._chain = MuscleChain(formulation, points)
+        self._chain = MuscleChain(formulation)
         self.rows, self.columns = self._sparsity(points)
 
     def _sparsity(self, points: ControlPoints) -> tuple[np.ndarray, np.ndarray]:

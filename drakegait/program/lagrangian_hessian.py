@@ -80,7 +80,7 @@ class LagrangianHessian:
             raise InvalidInput("multipliers", "projected", "lifted for exact second derivatives")
         self._program = program
         self._dynamics = DynamicsCurvature(program.formulation.walker.skeleton)
-        self._spans = MuscleChain(program.formulation, program.points)
+        self._spans = MuscleChain(program.formulation)
         self._penalties = [cost for cost in program.costs if isinstance(cost, LoadPenalty)]
         self._numbers = {type(item): k for k, item in enumerate(program.constraints)}
 

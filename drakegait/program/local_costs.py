@@ -57,7 +57,7 @@ class MetabolicCost(LocalCost):
 
     def __init__(self, formulation: Formulation, points: ControlPoints):
         super().__init__(formulation, points)
-        self._chain = MuscleChain(formulation, points)
+        self._chain = MuscleChain(formulation)
         layout, width = points.layout, points.layout.width
         spanned = np.unique(self._chain.coordinate_of_span)
         window = np.arange(width)

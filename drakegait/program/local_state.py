@@ -162,7 +162,7 @@ class LocalState:
         residual, by_q, by_v, mass = walker.skeleton.residual_derivatives(
             self.q, self.v, self.motion.acceleration, self.multipliers
         )
-        passive_by_q, passive_by_v = walker.passive.derivatives(self.q, self.v)
+        passive_by_q, passive_by_v = walker.passive.derivatives(self.q)
         return Dynamics(
             residual - walker.passive.forces(self.q, self.v),
             by_q - passive_by_q,

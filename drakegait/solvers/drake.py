@@ -78,7 +78,7 @@ def solve_with_drake(
         text = log.read_text(errors="replace") if log.exists() else ""
     if options.solver == "ipopt":
         return _read_ipopt(drake, result, monitor, text, x)
-    return _read_snopt(drake, result, monitor, text, x)
+    return _read_snopt(drake, result, monitor, text)
 
 
 def _ipopt(options: SolverOptions, warm: bool, log: Path) -> dict[str, Any]:
@@ -144,7 +144,6 @@ def _read_snopt(
     result: MathematicalProgramResult,
     monitor: Monitor,
     log: str,
-    start: np.ndarray,
 ) -> Solution:
     code = result.get_solver_details().info
     status = _SNOPT_STATUS.get(code, "failed")

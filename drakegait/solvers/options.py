@@ -20,7 +20,7 @@ class SolverOptions(Settings):
     solver: str = choice(
         "condensed",
         SOLVERS,
-        "condensed: interior point on a dense core of the program; ipopt-mumps: IPOPT with MUMPS, "
+        "condensed: interior point on the splines' coefficients; ipopt-mumps: IPOPT with MUMPS, "
         "sparse arrays; ipopt, snopt: Drake's own solvers",
     )
     second_derivatives: str = choice(

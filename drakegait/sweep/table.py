@@ -25,7 +25,7 @@ COLUMNS = {
     "cost_of_transport_J_per_m": (
         "J/m", "metabolic energy per metre, E^t of eq. (8)",
         ("cost", "metabolic_cost_of_transport_J_per_m")),
-    "deviation_s": ("s", "deviation from the reference, J_dev of eq. (9)", ("cost", "deviation")),
+    "deviation_s": ("s", "deviation from the reference, J_dev of eq. (11)", ("cost", "deviation")),
     "cost": ("-", "f of eq. (13), as the solver saw it", ("cost", "total")),
     "speed_m_per_s": ("m/s", "average forward velocity", ("gait", "speed_m_per_s")),
     "stride_time_s": ("s", "duration of a stride", ("gait", "stride_time_s")),

@@ -171,12 +171,9 @@ class PassiveJoints:
             "damping": self._damping,
         }
 
-    def derivatives(self, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of `forces`: dQ/dq (..., n, n) [N m/rad] and dQ/dv (n, n) [N m s/rad].
-
-        Args:
-            v: not used, damping is linear.
-        """
+    def derivatives(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of `forces`: dQ/dq (..., n, n) [N m/rad] and dQ/dv (n, n) [N m s/rad]; the
+        latter does not change."""
         _, slope = self._exponentials(q)
         by_q = (self._signs.T * slope[..., None, :]) @ self._slopes
         if self._springs is not None:

@@ -15,9 +15,6 @@ import numpy as np
 
 from drakegait.walker import coordinates
 
-SEQUENCES = ("213", "123")
-"""The known orders, named by axes: 1 = x, 2 = y, 3 = z; the shipped models have the first."""
-
 _TRIPLES = (
     ("hat_list", "hat_tilt", "hat_rotation"),
     *((f"hip_adduction_{side}", f"hip_flexion_{side}", f"hip_rotation_{side}") for side in "rl"),

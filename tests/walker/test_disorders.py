@@ -301,7 +301,7 @@ def test_passive_derivatives_with_springs_and_bands():
     random = np.random.default_rng(0)
     q, v = random.uniform(-0.4, 0.4, (5, 16)), random.normal(size=(5, 16))
     weights, h = random.normal(size=(5, 16)), 1e-5
-    by_q, by_v = someone.derivatives(q, v)
+    by_q, by_v = someone.derivatives(q)
     curved = someone.curvature(q, weights)
     for i, way in enumerate(h * np.eye(16)):
         slope = (someone.forces(q + way, v) - someone.forces(q - way, v)) / (2 * h)

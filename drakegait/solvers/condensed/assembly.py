@@ -31,7 +31,7 @@ class Assembly:
         self._n, self._m = layout.num_coordinates, layout.num_muscles
         self._intervals, self._size = splines.num_intervals, size
         self._functions = self._n + self._m
-        self._spans = MuscleChain(program.formulation, points)
+        self._spans = MuscleChain(program.formulation)
         self._low, self._high = np.triu_indices(SUPPORT)  # the earlier and the later coefficient
         self._forward = self._low * SUPPORT + self._high
         self._backward = self._high * SUPPORT + self._low

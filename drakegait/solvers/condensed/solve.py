@@ -2,7 +2,8 @@
 
 Drake's IPOPT and `ipopt_mumps` take any program and spend most of their time in sparse
 factorisations of some 14 000 unknowns. Here contact forces and residuals are eliminated at
-their control points and slacks with their rows, which leaves a dense matrix of a few hundred.
+their control points and slacks with their rows, which leaves the coefficients of the splines:
+a matrix that couples neighbouring knots.
 Programs that this does not cover go to `ipopt_mumps`, and the message says so. Where rows get no
 better, or no step is acceptable, the elastic program (`solve_least`) tells whether the laws can
 hold near here: if so, the solve goes on from there; if not, that is the answer.
