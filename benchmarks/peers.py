@@ -52,7 +52,7 @@ import numpy as np
 from evaluation import evaluate, milliseconds  # this file's folder is where Python looks first
 from scipy.interpolate import CubicSpline
 
-from drakegait.export.bodies import TO_OPENSIM, read_parts
+from drakegait.export.bodies import read_parts
 from drakegait.export.opensim import GROUND, LOADS, export_opensim
 from drakegait.export.storage import write_storage
 from drakegait.gait import Gait
@@ -60,8 +60,9 @@ from drakegait.loads import loads_along
 from drakegait.program.design import coordinate_bounds
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
+from drakegait.quantities import GRAVITY
 from drakegait.walker import coordinates
-from drakegait.walker.skeleton import GRAVITY
+from drakegait.walker.coordinates import TO_OPENSIM
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "peers.json"

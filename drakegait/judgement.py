@@ -13,11 +13,11 @@ from pydrake.math import BsplineBasis
 from pydrake.trajectories import BsplineTrajectory
 
 from drakegait.check import CheckItem
-from drakegait.judged_disorders import disorders
+from drakegait.judged_disorders import EXCITATION_SLACK, disorders
 from drakegait.loads import Loads, loads_along, muscle_inputs
 from drakegait.motion import Motion
+from drakegait.quantities import GRAVITY
 from drakegait.walker import feet
-from drakegait.walker.skeleton import GRAVITY
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from drakegait.gait import Gait
 
 SLACK = 2.0  # times the tolerance, between control points
-EXCITATION_SLACK = 0.05
 GRIP_SLACK = 0.02  # of the friction that the ground can hold
 PULL_SLACK = 0.01  # of body weight that a point may pull at the ground
 ENERGY_TOLERANCE = 0.01

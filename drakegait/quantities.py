@@ -1,4 +1,4 @@
-"""What counts as a number, and the refusal of one that is out of range."""
+"""What counts as a number, the refusal of one that is out of range, and gravity."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from drakegait.errors import InvalidInput
+
+GRAVITY = 9.81  # [m/s^2], docs/formulation.md 0.1
 
 
 def is_number(value: Any) -> bool:

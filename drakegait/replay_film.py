@@ -11,8 +11,8 @@ from pydrake.geometry import MeshcatAnimation
 from pydrake.math import RigidTransform, RotationMatrix
 
 from drakegait import replay_scene as scene
+from drakegait.quantities import GRAVITY
 from drakegait.replay_muscles import MusclePiece, activation_colours
-from drakegait.walker.skeleton import GRAVITY
 
 if TYPE_CHECKING:
     from drakegait.gait import Gait

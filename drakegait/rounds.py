@@ -13,7 +13,7 @@ from drakegait.program.differences import DifferencedProgram
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_values
 from drakegait.program.kkt import KktMultipliers
-from drakegait.program.recentring import far_from_centres
+from drakegait.program.recentring import AT_BOUND, MOST_RECENTRINGS, far_from_centres
 from drakegait.program.starts import Start
 from drakegait.resampling import values_for
 from drakegait.solvers.advice import advice_for
@@ -26,8 +26,6 @@ from drakegait.solvers.solution import MESSAGES, Solution
 from drakegait.study import GaitStudy
 from drakegait.transcription.design_vector import DesignValues
 
-_MAX_RECENTRINGS = 3
-_AT_BOUND = 0.98  # of the reach of an event
 # From so many nodes on it is quicker to begin with half as many (docs/formulation.md 12.4).
 MANY_NODES = 48
 
@@ -125,9 +123,9 @@ class Rounds:
 
     def _recentre(self) -> None:
         """Events are bounded so that control points keep their window; move the bounds along."""
-        for _ in range(_MAX_RECENTRINGS):
+        for _ in range(MOST_RECENTRINGS):
             values = self.program.values(self.solution.x)
-            at_bound = far_from_centres(self.program, values.events, _AT_BOUND)
+            at_bound = far_from_centres(self.program, values.events, AT_BOUND)
             if self.solution.status != "converged" or not at_bound:
                 return
             self._again(values)

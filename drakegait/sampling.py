@@ -14,8 +14,8 @@ import numpy as np
 from drakegait.errors import InvalidInput
 from drakegait.labelled_arrays import LabelledArrays
 from drakegait.loads import Loads, loads_along, muscle_inputs
+from drakegait.quantities import GRAVITY
 from drakegait.walker import coordinates, feet
-from drakegait.walker.skeleton import GRAVITY
 
 if TYPE_CHECKING:
     from drakegait.gait import Gait

@@ -14,12 +14,10 @@ from pydrake.multibody.tree import RigidBody
 
 from drakegait.errors import BadFile
 from drakegait.walker import coordinates
+from drakegait.walker.coordinates import TO_OPENSIM
 from drakegait.walker.model_file import CONTACT_FRAMES
 from drakegait.walker.sdf_elements import OWN_MODEL
 from drakegait.walker.skeleton import Skeleton
-
-TO_OPENSIM = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-"""Turns our vectors (x forward, y left, z up) into OpenSim's (x forward, y up, z right)."""
 
 _SAME_PLACE = 1e-9  # [m]
 

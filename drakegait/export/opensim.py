@@ -22,16 +22,17 @@ from pathlib import Path
 import numpy as np
 
 from drakegait.errors import InvalidInput
-from drakegait.export.bodies import TO_OPENSIM, read_parts
+from drakegait.export.bodies import read_parts
 from drakegait.export.osim_model import osim_model
 from drakegait.export.storage import shown, write_storage
 from drakegait.export.xml_text import add, document, written
 from drakegait.gait import Gait
 from drakegait.loads import Loads, loads_along, muscle_inputs
 from drakegait.motion import Motion
+from drakegait.quantities import GRAVITY
 from drakegait.sampling import LOADED, centre_of_pressure
 from drakegait.walker import coordinates
-from drakegait.walker.skeleton import GRAVITY
+from drakegait.walker.coordinates import TO_OPENSIM
 from drakegait.whole_file import new_folder, write_text
 
 MODEL, GROUND, LOADS = "model.osim", "ground_reactions.mot", "external_loads.xml"

@@ -21,8 +21,8 @@ from drakegait.export.shapes import add_shapes
 from drakegait.export.xml_text import add, document, written
 from drakegait.program.design import coordinate_bounds
 from drakegait.program.formulation import JointLimit
+from drakegait.quantities import GRAVITY
 from drakegait.walker import coordinates
-from drakegait.walker.skeleton import GRAVITY
 from drakegait.walker.walker import Walker
 
 _TRAVEL = 100.0  # range of hat_x [m]: it contains the advance

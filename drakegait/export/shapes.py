@@ -8,8 +8,9 @@ from xml.etree.ElementTree import Element
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from drakegait.export.bodies import TO_OPENSIM, Part
+from drakegait.export.bodies import Part
 from drakegait.export.xml_text import add
+from drakegait.walker.coordinates import TO_OPENSIM
 
 _PLAIN = (0.7, 0.7, 0.7)
 

@@ -21,7 +21,7 @@ from drakegait.infeasibility.laws import MECHANICS, cheap_prices, laws_of
 from drakegait.program.elastic import ElasticHessian, ElasticProgram
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_values
-from drakegait.program.recentring import far_from_centres
+from drakegait.program.recentring import AT_BOUND, MOST_RECENTRINGS, far_from_centres
 from drakegait.solvers.condensed.solve_elastic import ELASTIC_OPTIONS, solve_elastic
 from drakegait.solvers.condensed.supported import why_not
 from drakegait.solvers.monitor import Monitor
@@ -29,9 +29,6 @@ from drakegait.solvers.outcome import Outcome
 from drakegait.solvers.solution import Solution
 from drakegait.study import GaitStudy
 from drakegait.transcription.design_vector import DesignValues
-
-_MAX_RECENTRINGS = 3
-_AT_BOUND = 0.98  # of the reach of an event
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +106,11 @@ class Relaxation:
     def least(self) -> Relaxed:
         """The walk that breaks all laws least; events are free to move far."""
         found = self.give_up(())
-        for _ in range(_MAX_RECENTRINGS):
+        for _ in range(MOST_RECENTRINGS):
             values = self.values(found)
             # What holds, holds wherever the events are.
             stop = self._monitor.stop_reason is not None or not found.broken
-            if stop or not far_from_centres(self.program, values.events, _AT_BOUND):
+            if stop or not far_from_centres(self.program, values.events, AT_BOUND):
                 break
             self._state(values)
             self._near = True

@@ -20,6 +20,7 @@ from drakegait.measured.notes import Notes
 from drakegait.measured.opensim_file import angle_scale
 from drakegait.measured.table import Table
 from drakegait.measured.time_axis import Series, equidistant, in_order, low_pass, without_gaps
+from drakegait.walker.rotation_sequence import rotation_matrix
 
 KNEES = ("auto", "flexion-positive", "flexion-negative")
 RATE = 200.0
@@ -203,22 +204,3 @@ def _resampled(series: Series) -> Series:
     values = CubicSpline(series.time, series.values, axis=0)(time)
     usable = np.interp(time, series.time, series.usable.astype(float)) > 0.999
     return Series(time=time, values=values, usable=usable)
-
-
-def rotation_matrix(bag: np.ndarray) -> np.ndarray:
-    """R_y(b) R_x(a) R_z(g) (..., 3, 3) of angles b, a, g (..., 3) [rad]."""
-    (sb, sa, sg), (cb, ca, cg) = (np.moveaxis(f(bag), -1, 0) for f in (np.sin, np.cos))
-    rows = [
-        [cb * cg + sb * sa * sg, -cb * sg + sb * sa * cg, sb * ca],
-        [ca * sg, ca * cg, -sa],
-        [-sb * cg + cb * sa * sg, sb * sg + cb * sa * cg, cb * ca],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-
-def rotation_angles(rotation: np.ndarray) -> np.ndarray:
-    """The inverse: b, a, g (..., 3) with |a| below a right angle."""
-    b = np.arctan2(rotation[..., 0, 2], rotation[..., 2, 2])
-    a = -np.arcsin(np.clip(rotation[..., 1, 2], -1.0, 1.0))
-    g = np.arctan2(rotation[..., 1, 0], rotation[..., 1, 1])
-    return np.stack([b, a, g], axis=-1)

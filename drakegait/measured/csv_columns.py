@@ -12,9 +12,7 @@ import numpy as np
 from drakegait.errors import BadFile, UnknownName
 from drakegait.measured.column_map import ColumnMap, axes_matrix
 from drakegait.measured.table import Table, numbers, read_text
-
-# from our axes to OpenSim's, in which the columns of a table are named
-_TO_OPENSIM = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+from drakegait.walker.coordinates import TO_OPENSIM
 
 
 def read_csv_table(path: str | Path, columns: ColumnMap, wanted: Callable[[str], bool]) -> Table:
@@ -83,7 +81,7 @@ def _named(found: dict[str, np.ndarray], columns: ColumnMap) -> dict[str, np.nda
 
 def _turned(table: Table, axes: tuple[str, str]) -> dict[str, np.ndarray]:
     """Vectors in OpenSim's axes, from the axes that the map names."""
-    turn = _TO_OPENSIM @ axes_matrix(axes)
+    turn = TO_OPENSIM @ axes_matrix(axes)
     columns = dict(table.columns)
     stems = {name[:-1] for name in columns if name.endswith(("vx", "px", "pelvis_tx"))}
     for stem in stems:

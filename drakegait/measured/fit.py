@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drakegait.measured.levenberg_marquardt import minimise
-from drakegait.reference.plausibility import GRAVITY
+from drakegait.quantities import GRAVITY
 from drakegait.transcription.foot_placement import FootPlacement
 from drakegait.transcription.splines import PeriodicQuintic
 from drakegait.walker.coordinates import names, rotations

@@ -23,7 +23,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from drakegait.measured.body_angles import rotation_angles
+from drakegait.walker.rotation_sequence import rotation_angles
 
 SIDED = ("ASI", "KNE", "ANK", "HEE", "TOE")
 NEEDED = tuple(f"{side}{name}" for side in "RL" for name in SIDED)

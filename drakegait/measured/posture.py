@@ -13,10 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drakegait.measured.body_angles import ANGLES, BodyAngles, rotation_angles, rotation_matrix
+from drakegait.measured.body_angles import ANGLES, BodyAngles
 from drakegait.measured.notes import Notes
 from drakegait.measured.time_axis import Series
 from drakegait.walker.coordinates import TRANSLATIONS, index, names
+from drakegait.walker.rotation_sequence import rotation_angles, rotation_matrix
 from drakegait.walker.skeleton import Skeleton
 
 TRUNK_SHARE = np.array([0.5, 0.65, 0.8])

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from drakegait.measured.fit import INSTANTS, FittedStride, StrideFit
+from drakegait.quantities import GRAVITY
 from drakegait.walker.coordinates import coordinates, to_anatomical
 from drakegait.walker.feet import NUM_PHASES, PHASE_NAMES
 
@@ -96,7 +97,7 @@ def force_table(fit: StrideFit, before: FittedStride, after: FittedStride) -> li
     """What the motion needs against what the plates measured [body weights]."""
     if fit.target.forces is None:
         return []
-    weight = fit.skeleton.total_mass * 9.81
+    weight = fit.skeleton.total_mass * GRAVITY
     errors = [(fit.ground_force(x) - fit.target.forces) / weight for x in (before, after)]
     names = ("fore-aft", "lateral", "vertical")
     return [

@@ -10,6 +10,7 @@ import numpy as np
 
 from drakegait.errors import BadFile
 from drakegait.measured.quality import spoken
+from drakegait.quantities import GRAVITY
 from drakegait.walker.coordinates import SPATIAL, to_anatomical
 from drakegait.walker.feet import NUM_PHASES
 from drakegait.whole_file import write_text
@@ -99,7 +100,7 @@ def force_figure(walk: ImportedWalk) -> Figure:
     """Measured forces, and what the fitted motion needs."""
     figure, panels = _panels(1, 3, (11.0, 3.1))
     tau = np.linspace(0.0, 1.0, 201)
-    weight = walk.subject.mass * 9.81
+    weight = walk.subject.mass * GRAVITY
     forces = walk.reference.ground_reactions(tau) / weight
     needed = walk.needed_force / weight
     instants = np.arange(len(needed)) / len(needed)

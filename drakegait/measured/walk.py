@@ -28,8 +28,8 @@ from drakegait.measured.quality import (
 )
 from drakegait.measured.stance_forces import stance_forces
 from drakegait.measured.strides import Stride, choose_stride
+from drakegait.quantities import GRAVITY
 from drakegait.reference.curves import SampledCurves
-from drakegait.reference.plausibility import GRAVITY
 from drakegait.reference.reference import Reference
 from drakegait.transcription.foot_placement import FootPlacement
 from drakegait.walker.coordinates import index

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from drakegait.gait import Gait
+from drakegait.quantities import GRAVITY
 from drakegait.report.curves import GaitCurves
 from drakegait.walker.coordinates import TRANSLATIONS
-from drakegait.walker.skeleton import GRAVITY
 
 ACTIVE = 0.10
 """Excitation above which a muscle counts as active, for how wide its bursts are."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from drakegait.errors import InvalidInput
 from drakegait.program.variants import Variants
+from drakegait.quantities import GRAVITY
 from drakegait.reference.reference import Reference
 from drakegait.settings import Settings, quantity
 from drakegait.transcription.schedule import Schedule
@@ -21,8 +22,6 @@ from drakegait.transcription.splines import PeriodicQuintic
 from drakegait.walker.disorders import Asymmetry, Pain
 from drakegait.walker.feet import ContactSettings
 from drakegait.walker.walker import Walker
-
-GRAVITY = 9.81  # [m/s^2], docs/formulation.md 0.1
 
 
 @dataclass(frozen=True, kw_only=True)

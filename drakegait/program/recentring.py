@@ -13,6 +13,8 @@ import numpy as np
 
 from drakegait.program.gait_program import GaitProgram
 
+MOST_RECENTRINGS = 3  # of a round that has ended
+AT_BOUND = 0.98  # of the reach of an event
 
 def far_from_centres(program: GaitProgram, events: np.ndarray, share: float) -> bool:
     """Whether an event is further from its centre than `share` of its reach.

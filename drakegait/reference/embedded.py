@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from drakegait.errors import UnknownName
+from drakegait.quantities import GRAVITY
 from drakegait.reference.curves import HarmonicCurves, SampledCurves
-from drakegait.reference.plausibility import GRAVITY
 from drakegait.transcription.foot_placement import FootPlacement
 from drakegait.walker.coordinates import coordinates
 from drakegait.walker.subject import Subject

@@ -15,7 +15,6 @@ from drakegait.errors import InvalidInput
 from drakegait.walker.coordinates import Coordinate
 from drakegait.walker.subject import Subject
 
-GRAVITY = 9.81
 """Acceleration of gravity that makes a body weight of a mass [m/s^2]."""
 
 LARGEST_ANGLE = math.pi  # no joint of a walking person, not even the knee, gets near

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from drakegait.errors import InvalidInput, UnknownName
+from drakegait.quantities import GRAVITY
 from drakegait.reference.csv_file import read_csv
 from drakegait.reference.plausibility import (
-    GRAVITY,
     check_advance,
     check_angles,
     check_forces,

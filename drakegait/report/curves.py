@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drakegait.walker.skeleton import GRAVITY
+from drakegait.quantities import GRAVITY
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -25,8 +25,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drakegait.quantities import GRAVITY
 from drakegait.walker import coordinates, feet
-from drakegait.walker.skeleton import GRAVITY
 
 if TYPE_CHECKING:
     from drakegait.study import GaitStudy

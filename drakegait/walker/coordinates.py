@@ -24,6 +24,8 @@ from drakegait.errors import UnknownName
 SKELETONS = ("spatial", "planar")
 TRANSLATIONS = ("hat_x", "hat_y", "hat_z")
 """Names of the coordinates that are lengths [m]; all others are angles [rad]."""
+TO_OPENSIM = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""Turns our vectors (x forward, y left, z up) into OpenSim's (x forward, y up, z right)."""
 _OTHER_SIDE = {"_r": "_l", "_l": "_r"}
 
 

@@ -7,7 +7,6 @@ inertia of their segment by the parallel-axis theorem.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
@@ -17,6 +16,7 @@ import numpy as np
 
 from drakegait.errors import BadFile, InvalidInput
 from drakegait.walker.coordinates import names
+from drakegait.walker.data_table import read_table
 from drakegait.walker.sdf_elements import (
     OWN_MODEL,
     named_element,
@@ -129,10 +129,7 @@ def read_segments(text: str) -> dict[str, Segment]:
 
 def _apply_anthropometry(root: Element, name: str) -> None:
     """Replace the values of the SDF file by those of the set `name`, where it has its own."""
-    table = Path(__file__).with_name("data") / "anthropometry.csv"
-    with table.open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    for row in (row for row in rows if row["set"] == name):
+    for row in (row for row in read_table("anthropometry") if row["set"] == name):
         kind = row["segment"]
         value = {key: float(row[key]) for key in row if key not in ("set", "segment")}
         com = np.array([value["com_x_m"], value["com_y_m"], value["com_z_m"]])

@@ -11,15 +11,14 @@ contribution to every joint stays below a tenth of the largest one there is negl
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from drakegait.errors import InvalidInput, UnknownName
 from drakegait.walker import coordinates
+from drakegait.walker.data_table import read_table
 from drakegait.walker.muscles import MuscleSet
 
 JOINTS = ("hip", "knee", "ankle")
@@ -158,7 +157,7 @@ def judge(
 
 def printed_contributions(threshold: float = THRESHOLD) -> tuple[Contribution, ...]:
     """Table 1 of the paper; `kept` tells what Table 3 has, `counts` what the rule says."""
-    rows = _table()
+    rows = read_table("muscle_contributions")
     moments = [[float(row[f"{joint}_Nm"]) for joint in JOINTS] for row in rows]
     names = [row["muscle"] for row in rows]
     kept = [row["muscle"] for row in rows if row["kept"] == "yes"]
@@ -169,7 +168,7 @@ def printed_shares() -> dict[str, tuple[float, float, float]]:
     """The shares as Table 1 prints them, 0..1, by muscle."""
     return {
         row["muscle"]: tuple(float(row[f"{joint}_percent"]) / 100.0 for joint in JOINTS)
-        for row in _table()
+        for row in read_table("muscle_contributions")
     }
 
 
@@ -213,9 +212,3 @@ def _remark_of_dropped(row: Contribution, joint: int) -> str:
     if row.shares[joint] < THRESHOLD:
         return "neglected"
     return f"neglected, although {100.0 * row.shares[joint]:.2f} % of the largest"
-
-
-def _table() -> list[dict[str, str]]:
-    path = Path(__file__).parent / "data" / "muscle_contributions.csv"
-    lines = path.read_text(encoding="utf-8").splitlines()
-    return list(csv.DictReader(line for line in lines if not line.startswith("#")))

@@ -9,16 +9,15 @@ so one constant matrix A = `moment_arms` gives both: l = l0 - A q and torque = A
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from pathlib import Path
 
 import numpy as np
 
 from drakegait.errors import InvalidInput, UnknownName
 from drakegait.quantities import is_number
 from drakegait.walker import coordinates
+from drakegait.walker.data_table import read_table
 from drakegait.walker.subject import Subject
 
 SPECIFIC_TENSION = 0.25e6
@@ -110,7 +109,7 @@ class MuscleSet:
         columns = coordinates.index(kind)
         if planar_set not in PLANAR_SETS:
             raise UnknownName("planar muscle set", planar_set, PLANAR_SETS)
-        rows = _read_table(
+        rows = read_table(
             "muscles_spatial" if kind == "spatial" else f"muscles_planar_{planar_set}"
         )
         sided = [dict(row, side=side) for side in ("r", "l") for row in rows]
@@ -227,11 +226,6 @@ class MuscleSet:
             (..., num_coordinates) in plant signs.
         """
         return np.asarray(forces) @ self.moment_arms
-
-
-def _read_table(name: str) -> list[dict[str, str]]:
-    text = (Path(__file__).parent / "data" / f"{name}.csv").read_text(encoding="utf-8")
-    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
 
 
 def select(name: str, names: tuple[str, ...], groups: tuple[str, ...]) -> list[int]:

@@ -59,6 +59,17 @@ def convert(values: np.ndarray, given: str, wanted: str) -> np.ndarray:
     return out
 
 
+def rotation_matrix(bag: np.ndarray) -> np.ndarray:
+    """R_y(b) R_x(a) R_z(g) (..., 3, 3) of angles b, a, g (..., 3) [rad]."""
+    b, a, g = np.moveaxis(bag, -1, 0)
+    return _rotation(a, b, g, "213")
+
+
+def rotation_angles(rotation: np.ndarray) -> np.ndarray:
+    """The inverse: b, a, g (..., 3) with |a| below a right angle."""
+    return _angles(rotation, "213")[..., [1, 0, 2]]
+
+
 def _rotation(a: np.ndarray, b: np.ndarray, g: np.ndarray, sequence: str) -> np.ndarray:
     about_x, about_y, about_z = _turn(a, 0), _turn(b, 1), _turn(g, 2)
     if sequence == "213":
@@ -80,11 +91,11 @@ def _turn(angle: np.ndarray, axis: int) -> np.ndarray:
 def _angles(R: np.ndarray, sequence: str) -> np.ndarray:
     """a, b, g (..., 3) of rotations (..., 3, 3)."""
     if sequence == "213":
-        a = np.arcsin(-R[..., 1, 2])
+        a = np.arcsin(np.clip(-R[..., 1, 2], -1.0, 1.0))
         b = np.arctan2(R[..., 0, 2], R[..., 2, 2])
         g = np.arctan2(R[..., 1, 0], R[..., 1, 1])
     else:
         a = np.arctan2(-R[..., 1, 2], R[..., 2, 2])
-        b = np.arcsin(R[..., 0, 2])
+        b = np.arcsin(np.clip(R[..., 0, 2], -1.0, 1.0))
         g = np.arctan2(-R[..., 0, 1], R[..., 0, 0])
     return np.stack([a, b, g], axis=-1)

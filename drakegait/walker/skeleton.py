@@ -20,6 +20,7 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant, MultibodyPlant_
 
 from drakegait.errors import BadFile, InvalidInput
+from drakegait.quantities import GRAVITY
 from drakegait.walker import coordinates
 from drakegait.walker.dynamics_derivatives import (
     Motion,
@@ -37,7 +38,6 @@ from drakegait.walker.sdf_elements import OWN_MODEL
 from drakegait.walker.segment_edits import SegmentEdit
 from drakegait.walker.subject import AddedMass, Subject
 
-GRAVITY = 9.81
 """Acceleration of gravity [m/s^2]."""
 
 # From here on numpy costs less than Drake's calls for each instant (a third for 76).

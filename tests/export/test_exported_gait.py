@@ -10,13 +10,13 @@ from gait_cases import reference_gait
 
 from drakegait.errors import BadFile, InvalidInput
 from drakegait.export import export_csv, export_opensim, export_sdf
-from drakegait.export.bodies import TO_OPENSIM
 from drakegait.loads import loads_along
 from drakegait.program.variants import Variants
 from drakegait.reference.csv_file import read_csv
 from drakegait.sampling import LOADED
 from drakegait.study import GaitStudy
 from drakegait.walker import coordinates
+from drakegait.walker.coordinates import TO_OPENSIM
 from drakegait.walker.skeleton import Skeleton
 
 NUM = 101

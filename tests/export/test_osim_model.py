@@ -11,13 +11,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from drakegait.errors import UnknownName
-from drakegait.export.bodies import TO_OPENSIM, read_parts
+from drakegait.export.bodies import read_parts
 from drakegait.export.muscles import active_force, width_scale
 from drakegait.export.osim_model import osim_model
 from drakegait.program.variants import Variants
 from drakegait.study import GaitStudy
 from drakegait.walker import coordinates
 from drakegait.walker import disorders as dis
+from drakegait.walker.coordinates import TO_OPENSIM
 from drakegait.walker.joint_springs import JointSpring
 from drakegait.walker.passive_joints import PassiveJoints, PassiveSettings
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from measured_cases import SUBJECT
 
-from drakegait.measured.body_angles import rotation_angles, rotation_matrix
 from drakegait.measured.fit import INSTANTS, StrideFit, StrideTarget
 from drakegait.measured.levenberg_marquardt import minimise
 from drakegait.reference.reference import Reference
 from drakegait.walker.coordinates import names
+from drakegait.walker.rotation_sequence import rotation_angles, rotation_matrix
 from drakegait.walker.skeleton import Skeleton
 
 TAU = np.arange(INSTANTS) / INSTANTS

@@ -11,6 +11,7 @@ from drakegait.check import check
 from drakegait.gait import Gait
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
+from drakegait.quantities import GRAVITY
 from drakegait.report.comparison_curves import BAND_SHARE, OTHER_ANGLES, SAGITTAL_ANGLES
 from drakegait.report.comparison_tables import GaitNumbers, rows
 from drakegait.report.cost_split import PARTS, CostSplit, phase_shares
@@ -22,7 +23,6 @@ from drakegait.report.spatiotemporal import spatiotemporal
 from drakegait.report.symmetry import UNIT, symmetry, symmetry_index
 from drakegait.study import GaitStudy
 from drakegait.walker import coordinates
-from drakegait.walker.skeleton import GRAVITY
 
 INSTANTS = 1001
 

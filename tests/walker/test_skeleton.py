@@ -8,8 +8,9 @@ import pytest
 from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, ExtractValue, InitializeAutoDiff
 from skeleton_cases import differences, pinocchio_model, state
 
+from drakegait.quantities import GRAVITY
 from drakegait.walker import coordinates
-from drakegait.walker.skeleton import GRAVITY, Skeleton
+from drakegait.walker.skeleton import Skeleton
 from drakegait.walker.subject import SEGMENTS, AddedMass, Subject, segment_properties
 
 KINDS = coordinates.SKELETONS
