@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from drakegait.errors import InvalidInput
+from drakegait.quantities import MOST_INSTANTS, check_count
 from drakegait.walker import feet
 
 if TYPE_CHECKING:
@@ -228,14 +228,12 @@ def check(gait: Gait, instants: int = 1000) -> CheckReport:
 
     Args:
         gait: converged or not.
-        instants: at least 100.
+        instants: 100 to 100 001.
 
     Raises:
-        InvalidInput: too few instants.
+        InvalidInput: too few or too many instants.
     """
     from drakegait.judgement import judge
 
-    whole = isinstance(instants, int) and not isinstance(instants, bool)
-    if not whole or instants < FEWEST_INSTANTS:
-        raise InvalidInput("instants", instants, f"a whole number of at least {FEWEST_INSTANTS}")
+    check_count("instants", instants, FEWEST_INSTANTS, MOST_INSTANTS)
     return CheckReport(instants + 2 * feet.NUM_PHASES, judge(gait, instants))

@@ -8,6 +8,7 @@ dimension in the attribute `coordinates` of each array that they label.
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drakegait.errors import BadFile
-from drakegait.whole_file import beside
+from drakegait.whole_file import write_bytes
 
 if TYPE_CHECKING:
     import h5netcdf
@@ -95,11 +96,13 @@ def write_netcdf(path: str | Path, groups: Mapping[str, LabelledArrays]) -> None
     path = Path(path)
     if path.is_dir():
         raise BadFile(path, "is a folder, not a file to write.")
-    with beside(path) as part, h5netcdf.File(part, "w") as file:
+    memory = io.BytesIO()  # HDF5 that writes to a full disk itself ends the process
+    with h5netcdf.File(memory, "w") as file:
         shared = groups[ROOT].write(file, {})
         for name, content in groups.items():
             if name != ROOT:
                 content.write(file.create_group(name), shared)
+    write_bytes(path, memory.getvalue())
 
 
 def _write_array(

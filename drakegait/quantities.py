@@ -10,6 +10,7 @@ import numpy as np
 from drakegait.errors import InvalidInput
 
 GRAVITY = 9.81  # [m/s^2], docs/formulation.md 0.1
+MOST_INSTANTS = 100_001  # at which a gait is evaluated in one piece
 
 
 def is_number(value: Any) -> bool:
@@ -27,6 +28,12 @@ def check_number(name: str, value: Any, low: float, high: float, unit: str) -> N
     """Refuse anything but a number from `low` to `high`; raises InvalidInput."""
     if not is_number(value) or not low <= value <= high:
         raise InvalidInput(name, value, f"a number from {low:g} to {high:g} [{unit}]")
+
+
+def check_count(name: str, value: Any, low: int, high: int) -> None:
+    """Refuse anything but a whole number from `low` to `high`; raises InvalidInput."""
+    if not is_whole(value) or not low <= value <= high:
+        raise InvalidInput(name, value, f"a whole number from {low} to {high}")
 
 
 def plain(value: Any) -> Any:

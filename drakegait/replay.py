@@ -12,9 +12,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from drakegait.errors import InvalidInput
+from drakegait.quantities import check_count
 from drakegait.replay_page import page_of_one
 from drakegait.whole_file import write_text
 
@@ -45,13 +44,9 @@ def replay(
         InvalidInput: for a number of strides or a port that cannot be.
         BadFile: the file cannot be written.
     """
-    if isinstance(strides, bool) or not isinstance(strides, (int, np.integer)) or not (
-        1 <= strides <= MOST_STRIDES
-    ):  # fmt: skip
-        raise InvalidInput("strides", strides, f"a whole number from 1 to {MOST_STRIDES}")
-    whole = isinstance(port, (int, np.integer)) and not isinstance(port, bool)
-    if port is not None and not (whole and PORTS[0] <= port <= PORTS[1]):
-        raise InvalidInput("port", port, f"a whole number from {PORTS[0]} to {PORTS[1]}")
+    check_count("strides", strides, 1, MOST_STRIDES)
+    if port is not None:
+        check_count("port", port, *PORTS)
     from drakegait.replay_film import Film, animate
     from drakegait.replay_scene import build, set_view
 

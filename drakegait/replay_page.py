@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drakegait.replay_muscles import activation_colours
+from drakegait.report.study_words import who
 from drakegait.report.style import SIDE_COLOURS
 from drakegait.walker import feet
 
@@ -80,10 +81,8 @@ def page_of_one(page: str, gait: Gait) -> str:
     Args:
         page: Meshcat's static page.
     """
-    study = gait.study
-    worn = "".join(f", {item.mass:g} kg on {item.segment}" for item in study.added_masses)
     text = (
-        f"{study.model} model, {study.subject.height:.2f} m, {study.subject.mass:g} kg{worn}; "
+        f"{who(gait.study)}; "
         f"{gait.speed:.2f} m/s, stride {gait.stride_length:.2f} m in {gait.stride_time:.2f} s"
     )
     title = f"<b>{html.escape(text)}</b>"

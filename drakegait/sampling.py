@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drakegait.errors import InvalidInput
 from drakegait.labelled_arrays import LabelledArrays
 from drakegait.loads import Loads, loads_along, muscle_inputs
-from drakegait.quantities import GRAVITY
+from drakegait.quantities import GRAVITY, MOST_INSTANTS, check_count
 from drakegait.walker import coordinates, feet
 
 if TYPE_CHECKING:
@@ -37,10 +36,9 @@ def sample(gait: Gait, num: int = 201) -> LabelledArrays:
         between segments), muscle, foot, axis, contact_point, segment.
 
     Raises:
-        InvalidInput: fewer than 2 instants.
+        InvalidInput: fewer than 2 or more than `MOST_INSTANTS`.
     """
-    if isinstance(num, bool) or not isinstance(num, (int, np.integer)) or num < 2:
-        raise InvalidInput("num", num, "a whole number of at least 2")
+    check_count("instants", num, 2, MOST_INSTANTS)
     tau = np.linspace(0.0, 1.0, num)
     motion, phases = gait.motion(tau), gait.phase_of(tau)
     loads = loads_along(gait.study.walker, motion, phases)

@@ -68,7 +68,7 @@ REFUSED = [
     (["--muscle", "SOL.l_slack=long"], ["--muscle", "SOL.l_slack=long"]),
     (["--muscle", "SOL.slack=0.2"], ["muscle entry", "'slack'", "l_slack"]),
     (["--muscle", "SOLE.l_slack=0.2"], ["muscle", "'SOLE'", "soleus_r"]),
-    (["--muscle", "SOL.l_slack=-1"], ["l_slack of SOL", "-1.0", "above 0"]),
+    (["--muscle", "SOL.l_slack=-1"], ["l_slack of SOL", "-1.0", "0.0508 to 1.27"]),
     (["--set", "sequence=321"], ["sequence", "'321'", "213, 123"]),
     (["--set", "frction=0.4"], ["setting", "'frction'", "tendon_strain", "mean 'friction'"]),
     (["--set", "friction=-1"], ["friction", "-1.0", "0.02 to 2"]),
@@ -101,8 +101,15 @@ REFUSED = [
     (["--limit", "knee_flexion_r=60:0"], ["--limit", "low end"]),
     (["--limit", "knee_flexion_r=nan:60"], ["--limit", "low end"]),
     (["--limit", "knee_flexion_r=:"], ["--limit", "LOW:HIGH"]),
+    (["--set", "friction=0.4", "--set", "contact.friction=0.5"], ["contact.friction=0.5", "once"]),
+    (["--strength", "SOL=0.5", "--strength", "SOL=0.9"], ["'SOL=0.9'", "stated once for SOL"]),
+    (["--strength", "SOL=0.5", "--strength", "soleus_l=0.9"], ["0.9 for soleus_l", "SOL states"]),
+    (["--muscle", "SOL.l0=0.3", "--muscle", "SOL.l0=0.31"], ["'SOL.l0=0.31'", "once for SOL.l0"]),
+    (["--muscle", "SOL.l_slack=240"], ["l_slack of SOL", "240.0", "0.0508 to 1.27"]),
+    (["--muscle", "SOL.color=-1"], ["muscle entry", "'color'", "l_opt"]),
     (["--planar-muscles", "many", "--model", "planar"], ["'many'", "table3, gait2d"]),
-    (["--reference", "nomal"], ["--reference", "'nomal'", "measured", "CSV", "mean 'normal'"]),
+    (["--reference", "nomal"],
+     ["--reference", "'nomal'", "measured", "path of a file", "mean 'normal'"]),
     (["--reference", "missing.csv"], ["missing.csv", "cannot be read"]),
     (["--guess", "missing.nc"], ["missing.nc", "does not exist"]),
     (["--starts", "0"], ["starts", "whole number from 1"]),
@@ -275,8 +282,8 @@ def test_options_reach_the_study():
         model="planar", nodes=20, speed=1.0, weights=("0.5", "2"), height=1.7, mass=60.0,
         added_mass=["foot_r=2.0", "hat=5@0.1,0,0.3"], strength=["SOL=0.5", "vasti_l=2"],
         limit=["knee_flexion_r=:45", "hat_z=0.8:1.1", "hip_flexion_l=-10:"],
-        set_=["friction=0.4", "energy.model=umberger2010", "basal=on", "anthropometry=deleva",
-              "muscles.a_rel=0.3", "optimality=1e-4", "friction=0.5"],
+        set_=["friction=0.5", "energy.model=umberger2010", "basal=on", "anthropometry=deleva",
+              "muscles.a_rel=0.3", "optimality=1e-4"],
         planar_muscles="gait2d", multipliers="projected", solver="snopt", time_limit=7.0,
         reference="asymmetric",
     ).prepare()  # fmt: skip
@@ -301,7 +308,7 @@ def test_options_reach_the_study():
 
 def test_a_named_reference_follows_subject_and_settings():
     study, *_ = request(height=1.6, reference="normal", set_=["sigma_rule=printed"]).prepare()
-    assert study.reference.deviation.sigma_rule == "printed"
+    assert study.reference_walk.deviation.sigma_rule == "printed"
     normal = Reference.embedded("spatial")
     ratio = study.reference.foot_placement.stride_length / normal.foot_placement.stride_length
     assert ratio == pytest.approx(1.6 / 1.8)

@@ -73,6 +73,21 @@ SENTENCES = (
 )
 
 
+def test_walks_that_explained_another_question_are_named_and_then_replaced(
+    capsys, tmp_path, told, ended
+):
+    for name in ("remedy_1.nc", "remedy_2.nc", "feasible.nc"):
+        (tmp_path / name).write_bytes(b"of an earlier question")
+    ended("converged")
+    _, out, _ = run(capsys, *WALK, tmp_path)
+    assert "feasible.nc, remedy_1.nc, remedy_2.nc" in out and "of an earlier walk" in out
+    ended("infeasible")
+    _, out, _ = run(capsys, *WALK, tmp_path)
+    assert "of an earlier walk" not in out
+    assert [path.name for path in sorted(tmp_path.glob("*.nc"))] == ["gait.nc", "remedy_1.nc"]
+    assert Gait.load(tmp_path / "remedy_1.nc").converged
+
+
 @pytest.mark.parametrize("status", ["infeasible", "failed", "iteration_limit"])
 def test_a_walk_that_was_not_found_ends_with_the_explanation(capsys, tmp_path, told, ended, status):
     ended(status)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from drakegait.commands.gait_files import gait_path, load_gait
+from drakegait.commands.gait_files import gait_path, load_gait, output_file, output_folder
 from drakegait.commands.screen import console, quiet_drake
 from drakegait.report.compare import LONGEST_LABEL, Comparison, compare
 from drakegait.report.comparison_words import headline, troubles
@@ -19,18 +19,20 @@ def write_comparison(
     names: Sequence[str], out: str, labels: str | None, csv: str | None, reference: bool
 ) -> int:
     """Write the report of the gaits called `names`; returns the exit code."""
+    page = output_file("--out", out, ".html")
+    tables = None if csv is None else output_folder("--csv", csv)
     gaits = [load_gait(name) for name in names]
     given = file_labels(names) if labels is None else [part.strip() for part in labels.split(",")]
     comparison = compare(*gaits, labels=given, reference=reference)
     screen = console()
     quiet_drake()
     with screen.status("drawing ..."):
-        comparison.save(out)
-        if csv is not None:
-            comparison.save_csv(csv)
+        comparison.save(page)
+        if tables is not None:
+            comparison.save_csv(tables)
     print_findings(screen, comparison)
-    tables = "" if csv is None else f", tables in {csv}"
-    screen.print(f"Report in {out}{tables}.", markup=False, soft_wrap=True)
+    also = "" if csv is None else f", tables in {csv}"
+    screen.print(f"Report in {out}{also}.", markup=False, soft_wrap=True)
     return 0 if comparison.trusted else NOT_TRUSTED
 
 

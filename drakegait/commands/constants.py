@@ -34,12 +34,12 @@ def catalogue() -> dict[str, tuple[str, dataclasses.Field]]:
 
 
 def read_constants(texts: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Values by group and name from `["friction=0.4", ...]`; the last of one name counts.
+    """Values by group and name from `["friction=0.4", ...]`.
 
     Raises:
         UnknownName: no such constant.
-        InvalidInput: not NAME=VALUE, or a value that cannot be read. Ranges are checked by the
-            groups.
+        InvalidInput: not NAME=VALUE, a value that cannot be read, or a constant stated twice.
+            Ranges are checked by the groups.
     """
     values: dict[str, dict[str, Any]] = {}
     for text in texts:
@@ -53,7 +53,9 @@ def read_constants(texts: Iterable[str]) -> dict[str, dict[str, Any]]:
             group, item = find(GROUPS, name)
         except UnknownName:
             raise UnknownName("setting", name, sorted(catalogue())) from None
-        values.setdefault(group, {})[item.name] = parse(item, value)
+        if item.name in values.setdefault(group, {}):
+            raise InvalidInput("--set", text, f"stated once for {item.name}")
+        values[group][item.name] = parse(item, value)
     return values
 
 

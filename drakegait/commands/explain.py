@@ -53,6 +53,12 @@ def explain_gait(
     return found
 
 
+def walks_in(folder: Path) -> list[str]:
+    """Names of walks that an explanation left in a folder."""
+    names = [path.name for path in folder.glob(REMEDY_FILE.format("*"))]
+    return [*([FEASIBLE_FILE] if (folder / FEASIBLE_FILE).exists() else []), *sorted(names)]
+
+
 def _save(found: Explanation, folder: Path) -> list[str]:
     """Write the walks that an explanation found; returns the names of the files."""
     walks = {FEASIBLE_FILE: found.gait} if found.gait is not None else {}
@@ -60,6 +66,8 @@ def _save(found: Explanation, folder: Path) -> list[str]:
         REMEDY_FILE.format(number): remedy.gait
         for number, remedy in enumerate(found.remedies, 1)
     }
+    for name in set(walks_in(folder)) - set(walks):  # answers to another question
+        (folder / name).unlink(missing_ok=True)
     for name, gait in walks.items():
         gait.save(folder / name)
     return list(walks)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from drakegait.errors import BadFile
+from drakegait.errors import BadFile, InvalidInput
 from drakegait.gait import Gait
 
 GAIT_FILE = "gait.nc"
@@ -26,15 +26,38 @@ def load_gait(name: str) -> Gait:
     return Gait.load(gait_path(name))
 
 
+def output_file(option: str, name: str, suffix: str) -> Path:
+    """Where to write a file: its suffix keeps a gait from being named by mistake.
+
+    Raises:
+        InvalidInput: another suffix, or no name.
+        BadFile: it is a folder.
+    """
+    path = Path(name).expanduser()
+    if path.suffix.lower() != suffix:
+        raise InvalidInput(option, name, f"the name of a file that ends in {suffix}")
+    if path.is_dir():
+        raise BadFile(path, "is a folder.")
+    return path
+
+
+def output_folder(option: str, name: str) -> Path:
+    """A folder to write to, not made yet; raises InvalidInput for an empty name, BadFile."""
+    if not name.strip():
+        raise InvalidInput(option, name, "the name of a folder; this one is called .")
+    path = Path(name).expanduser()
+    if path.exists() and not path.is_dir():
+        raise BadFile(path, "is a file, but a folder is needed.")
+    return path
+
+
 def writable_folder(name: str | Path) -> Path:
     """A folder that exists and takes files, made if need be.
 
     Raises:
         BadFile: it cannot be made or written to, or holds a folder where a file must go.
     """
-    folder = Path(name).expanduser()
-    if folder.exists() and not folder.is_dir():
-        raise BadFile(folder, "is a file, but a folder for the results is needed.")
+    folder = output_folder("--out", str(name))
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):

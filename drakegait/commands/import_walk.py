@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from drakegait.commands.gait_files import output_file
 from drakegait.commands.screen import console
-from drakegait.errors import BadFile, InvalidInput
+from drakegait.errors import BadFile, DrakegaitError, InvalidInput
 from drakegait.measured.imported import ImportedWalk, quality_path
 from drakegait.measured.walk import import_walk
+from drakegait.reference.reference import Reference
 
 _SIDE = "PLATE=SIDE with side right or left, for example 'plate 1=right'"
 
@@ -21,14 +23,22 @@ def import_files(
     Raises:
         BadFile, InvalidInput, UnknownName: in one sentence, what cannot be used.
     """
-    target = Path(out).expanduser()
-    if target.suffix.lower() != ".nc":
-        raise InvalidInput("--output", out, "the name of a file that ends in .nc")
+    target = output_file("--output", out, ".nc")
+    if target.exists():
+        _check_reference(target)
     if not target.parent.is_dir():
         raise BadFile(target.parent, "does not exist; make the folder first.")
     walk = import_walk(motion, forces, sides=dict(_side(text) for text in sides or ()), **options)
     walk.save(target)
     _print(walk, target)
+
+
+def _check_reference(path: Path) -> None:
+    """Refuse to replace what is no reference, such as a gait."""
+    try:
+        Reference.load(path)
+    except DrakegaitError:
+        raise BadFile(path, "is there and holds no imported walk; name another file.") from None
 
 
 def _side(text: str) -> tuple[str, str]:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from pathlib import Path
 
 from drakegait.check import check
-from drakegait.commands.gait_files import FIGURES_FOLDER, gait_path, load_gait
+from drakegait.commands.gait_files import (
+    FIGURES_FOLDER,
+    gait_path,
+    load_gait,
+    output_file,
+    output_folder,
+)
 from drakegait.commands.screen import console, print_report, quiet_drake
-from drakegait.errors import BadFile
 
 NOT_PASSED = 3
 
@@ -27,10 +31,9 @@ def print_check(name: str, instants: int) -> int:
 
 def draw_figures(name: str, folder: str | None, others: Sequence[str]) -> None:
     """Write the figures of a gait and say where they are."""
+    default = str(gait_path(name).parent / FIGURES_FOLDER)
+    target = output_folder("--out", default if folder is None else folder)
     gaits = [load_gait(each) for each in (name, *others)]
-    target = gait_path(name).parent / FIGURES_FOLDER if folder is None else Path(folder)
-    if target.exists() and not target.is_dir():
-        raise BadFile(target, "is a file, but a folder for the figures is needed.")
     from drakegait.report.figures import plot
 
     files = plot(gaits[0], target, gaits[1:])
@@ -40,11 +43,12 @@ def draw_figures(name: str, folder: str | None, others: Sequence[str]) -> None:
 
 def show_replay(name: str, html: str | None, strides: int, port: int | None) -> None:
     """Write the recording, or show it live until Ctrl-C."""
+    page = None if html is None else output_file("--html", html, ".html")
     gait = load_gait(name)
     from drakegait.replay import replay
 
     quiet_drake()
-    meshcat = replay(gait, html=html, strides=strides, port=port)
+    meshcat = replay(gait, html=page, strides=strides, port=port)
     if html is not None:
         console().print(f"Replay in {html}: open it in a browser.", markup=False, soft_wrap=True)
         return

@@ -99,7 +99,7 @@ class WalkRequest:
             added_masses=tuple(_added_mass(text) for text in self.added_mass or ()),
             energy_weight=energy_weight,
             deviation_weight=deviation_weight,
-            strength=dict(_strength(text) for text in self.strength or ()),
+            strength=_strengths(self.strength or ()),
             planar_muscles=self.planar_muscles,
             muscle_changes=_muscle_changes(self.muscle or ()),
             sdf=None if self.sdf is None else read_text(self.sdf),
@@ -155,9 +155,14 @@ def _added_mass(text: str) -> AddedMass:
     return AddedMass(segment, _number(option, text, mass, _ADDED), point)
 
 
-def _strength(text: str) -> tuple[str, float]:
-    name, value = _pair("--strength", text, _STRENGTH)
-    return name, _number("--strength", text, value, _STRENGTH)
+def _strengths(texts: Sequence[str]) -> dict[str, float]:
+    option, factors = "--strength", {}
+    for text in texts:
+        name, value = _pair(option, text, _STRENGTH)
+        if name in factors:
+            raise InvalidInput(option, text, f"stated once for {name}")
+        factors[name] = _number(option, text, value, _STRENGTH)
+    return factors
 
 
 def _muscle_changes(texts: Sequence[str]) -> dict[str, dict[str, float]]:
@@ -167,7 +172,9 @@ def _muscle_changes(texts: Sequence[str]) -> dict[str, dict[str, float]]:
         name, dot, entry = place.partition(".")
         if not dot or not name or not entry:
             raise InvalidInput(option, text, _CHANGE)
-        changes.setdefault(name, {})[entry] = _number(option, text, value, _CHANGE)
+        if entry in changes.setdefault(name, {}):
+            raise InvalidInput(option, text, f"stated once for {place}")
+        changes[name][entry] = _number(option, text, value, _CHANGE)
     return changes
 
 

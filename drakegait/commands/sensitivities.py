@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
-from drakegait.commands.gait_files import FIGURES_FOLDER, gait_path, load_gait
+from drakegait.commands.gait_files import FIGURES_FOLDER, gait_path, load_gait, output_folder
 from drakegait.commands.screen import console
-from drakegait.errors import BadFile, InvalidInput
+from drakegait.errors import InvalidInput
 from drakegait.exact import solve_exactly
 from drakegait.gait import Gait
 from drakegait.sensitivities import Sensitivities
+from drakegait.whole_file import new_folder
 
 CSV_FILE = "sensitivities.csv"
 
@@ -22,12 +22,10 @@ def print_sensitivities(name: str, folder: str | None, count: int, exact: bool =
     """Print the `count` largest answers and write table and picture; at the optimum if `exact`."""
     if not 1 <= count <= 60:
         raise InvalidInput("--count", count, "from 1 to 60")
+    default = str(gait_path(name).parent / FIGURES_FOLDER)
+    target = output_folder("--out", default if folder is None else folder)
     gait = load_gait(name)
-    target = gait_path(name).parent / FIGURES_FOLDER if folder is None else Path(folder)
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise BadFile(target, f"cannot be made ({error.strerror or error}).") from None
+    new_folder(target)
     screen = console()
     if exact:
         gait = _solved_on(gait, screen)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from drakegait.commands.explain import EXPLAINED_STATUSES, EXPLANATION, explain_gait
+from drakegait.commands.explain import EXPLAINED_STATUSES, EXPLANATION, explain_gait, walks_in
 from drakegait.commands.gait_files import (
     FIGURES_FOLDER,
     GAIT_FILE,
@@ -25,6 +25,7 @@ from drakegait.commands.screen import (
     print_starts,
     quiet_drake,
 )
+from drakegait.commands.sensitivities import CSV_FILE
 from drakegait.commands.unchanged import LABEL, UNCHANGED_FOLDER, known_gait, unchanged
 from drakegait.errors import InvalidInput
 from drakegait.gait import Gait
@@ -84,6 +85,7 @@ def _walk(
             study, guess=guess, options=options, refine=request.refine, starts=request.starts,
             seed=request.seed, report=display.report,
         )  # fmt: skip
+    earlier = walks_in(folder)
     files = _save(gait, folder)
     if gait.report is not None:
         print_report(screen, gait.report)
@@ -93,7 +95,9 @@ def _walk(
         spent = time.monotonic() - started
         found = _explain(screen, gait, folder, options.time_limit - spent)
         if found is not None:
+            earlier = []
             write_json(folder / SUMMARY_FILE, {**gait.summary(), EXPLANATION: found.to_dict()})
+    _warn_of_old(screen, folder, *earlier)
     if request.no_pictures:
         _warn_of_old(screen, folder, FIGURES_FOLDER, REPLAY_FILE)
     else:
@@ -101,6 +105,7 @@ def _walk(
             files += _pictures(screen, gait, folder)
         except KeyboardInterrupt:
             _say(screen, "Interrupted while drawing: pictures are missing or of an earlier gait.")
+        _warn_of_old(screen, folder, f"{FIGURES_FOLDER}/{CSV_FILE}")
     _say(screen, f"Files in {folder}: {', '.join(files)}.")
     return gait
 
@@ -190,7 +195,7 @@ def _warn_of_old(screen: Console, folder: Path, *names: str) -> None:
     old = [name for name in names if (folder / name).exists()]
     if old:
         verb = "is" if len(old) == 1 else "are"
-        _say(screen, f"Note: {' and '.join(old)} in {folder} {verb} of an earlier walk.")
+        _say(screen, f"Note: {', '.join(old)} in {folder} {verb} of an earlier walk.")
 
 
 def _say(screen: Console, text: str) -> None:

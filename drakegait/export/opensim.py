@@ -21,7 +21,6 @@ from pathlib import Path
 
 import numpy as np
 
-from drakegait.errors import InvalidInput
 from drakegait.export.bodies import read_parts
 from drakegait.export.osim_model import osim_model
 from drakegait.export.storage import shown, write_storage
@@ -29,7 +28,7 @@ from drakegait.export.xml_text import add, document, written
 from drakegait.gait import Gait
 from drakegait.loads import Loads, loads_along, muscle_inputs
 from drakegait.motion import Motion
-from drakegait.quantities import GRAVITY
+from drakegait.quantities import GRAVITY, MOST_INSTANTS, check_count
 from drakegait.sampling import LOADED, centre_of_pressure
 from drakegait.walker import coordinates
 from drakegait.walker.coordinates import TO_OPENSIM
@@ -65,8 +64,8 @@ def export_opensim(
         InvalidInput, UnknownName: for such arguments.
         BadFile: a file cannot be written.
     """
-    _check_count("num", num, 2, 100_001)
-    _check_count("strides", strides, 1, MOST_STRIDES)
+    check_count("instants", num, 2, MOST_INSTANTS)
+    check_count("strides", strides, 1, MOST_STRIDES)
     walker, kind = gait.study.walker, gait.study.skeleton_kind
     model = osim_model(
         walker, name=f"drakegait_{kind}", muscles=muscles, limits=gait.study.all_limits
@@ -101,12 +100,6 @@ _FILES = {
     MODEL, COORDINATES, GROUND, LOADS, "speeds.sto", "muscle_forces.sto", "activations.sto",
     "excitations.sto", "joint_moments.sto", "states.sto", "controls.sto", "inverse_dynamics.xml",
 }  # fmt: skip
-
-
-def _check_count(name: str, value: int, low: int, high: int) -> None:
-    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-    if not whole or not low <= value <= high:
-        raise InvalidInput(name, value, f"a whole number from {low} to {high}")
 
 
 def _write_motion(gait: Gait, folder: Path, motion: Motion) -> None:

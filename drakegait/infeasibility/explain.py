@@ -31,7 +31,7 @@ from drakegait.infeasibility.place import Place, place_of, short_muscles
 from drakegait.infeasibility.remedies import MOST_FAILURES, RemedySearch
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import guess_from_reference
-from drakegait.quantities import check_number
+from drakegait.quantities import check_count, check_number
 from drakegait.solvers.options import SolverOptions
 
 TIME_LIMIT = 600.0  # [s]
@@ -69,8 +69,7 @@ def explain(
     if gait.converged:
         raise InvalidInput("gait to explain", "converged", "one whose solve did not converge")
     check_number("time_limit", time_limit, 1.0, 1e6, "s")
-    if isinstance(remedies, bool) or not isinstance(remedies, int) or not 0 <= remedies <= 5:
-        raise InvalidInput("remedies", remedies, "a whole number from 0 to 5")
+    check_count("remedies", remedies, 0, 5)
     options = SolverOptions(max_iterations=_MAX_ITERATIONS)
     attempts = Attempts(time_limit, options.replace(**choices), report)
     with attempts.monitor:

@@ -14,6 +14,7 @@ from drakegait.measured.markers import BACK, MARKERS, NEEDED, marker_angles
 from drakegait.measured.notes import Notes
 from drakegait.measured.table import Table
 
+_LEG = (0.3, 0.8)  # of the height, from heel to the front of the pelvis
 _METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
 
 
@@ -41,11 +42,16 @@ def read_c3d_motion(
     except (KeyError, IndexError, ValueError) as error:
         raise BadFile(path, f"cannot be read as C3D with markers ({error}).") from None
     places = _places(path, labels, points, columns.markers)
-    scale = _METRES.get(str(units[0]).strip().lower()) if len(units) else None
-    if scale is None:
-        # hips are about a metre above the feet
-        size = np.nanmedian(np.linalg.norm(places["RASI"] - places["RHEE"], axis=-1))
-        scale = 1e-3 if size > 50.0 else 1.0
+    unit = str(units[0]).strip().lower() if len(units) else ""
+    # hips are about a metre above the feet
+    size = float(np.nanmedian(np.linalg.norm(places["RASI"] - places["RHEE"], axis=-1)))
+    scale = _METRES.get(unit, 1e-3 if size > 50.0 else 1.0)
+    if not _LEG[0] * height <= scale * size <= _LEG[1] * height:
+        raise BadFile(
+            path, f"has the front of the pelvis {scale * size:.3g} m from the heel, in its unit "
+            f"{unit or 'mm or m'!r}; a person of {height:g} m has {_LEG[0] * height:.2g} to "
+            f"{_LEG[1] * height:.2g} m. Is the unit wrong?",
+        )  # fmt: skip
     turn = _axes(places, notes, path) if columns.axes is None else axes_matrix(columns.axes)
     places = {name: scale * place @ turn.T for name, place in places.items()}
     angles, without = marker_angles(places, height)

@@ -73,15 +73,19 @@ def read_map(path: str | Path) -> ColumnMap:
     for key in plain:
         if key not in _KEYS:
             raise UnknownName(f"key in {path}", key, _KEYS)
+    sections = {key: plain.get(key, {}) for key in ("columns", "sides", "markers")}
+    for key, section in sections.items():
+        if not isinstance(section, dict):
+            raise InvalidInput(key, section, "a table of names")
     unit = plain.get("angle_unit")
     if unit not in (None, "deg", "rad"):
         raise UnknownName("angle_unit", unit, ("deg", "rad"))
     return ColumnMap(
-        columns={name: _column(name, value) for name, value in plain.get("columns", {}).items()},
+        columns={name: _column(name, value) for name, value in sections["columns"].items()},
         degrees=None if unit is None else unit == "deg",
         axes=_axes(plain.get("axes")),
-        sides={name: _side(name, value) for name, value in plain.get("sides", {}).items()},
-        markers={name: _label(name, value) for name, value in plain.get("markers", {}).items()},
+        sides={name: _side(name, value) for name, value in sections["sides"].items()},
+        markers={name: _label(name, value) for name, value in sections["markers"].items()},
     )
 
 

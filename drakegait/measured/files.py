@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from drakegait.errors import BadFile, UnknownName
+from drakegait.errors import BadFile, InvalidInput, UnknownName
 from drakegait.measured.body_angles import NAMES
 from drakegait.measured.column_map import ColumnMap, read_map
 from drakegait.measured.csv_columns import read_csv_table
@@ -43,12 +43,14 @@ def read_force_file(
     Raises:
         BadFile: of an unknown kind, or without forces.
     """
+    given = _map(columns)
+    feet = {**given.sides, **sides}
     if Path(path).suffix.lower() in C3D:
         from drakegait.measured.c3d_file import read_c3d
 
-        return read_c3d(path, sides=sides, axes=_map(columns).axes, cutoff=cutoff, notes=notes)
-    table = _table(path, _map(columns), is_force_column, notes)
-    return read_forces(replace(table, sides={**table.sides, **sides}), cutoff=cutoff, notes=notes)
+        return read_c3d(path, sides=feet, axes=given.axes, cutoff=cutoff, notes=notes)
+    table = _table(path, given, is_force_column, notes)
+    return read_forces(replace(table, sides={**table.sides, **feet}), cutoff=cutoff, notes=notes)
 
 
 def _map(columns: str | Path | None) -> ColumnMap:
@@ -70,6 +72,12 @@ def _table(
 ) -> Table:
     suffix = Path(path).suffix.lower()
     if suffix in OPENSIM:
+        useless = [f"columns.{name}" for name in columns.columns if wanted(name)]
+        if columns.degrees is not None and wanted is not is_force_column:
+            useless.append("angle_unit")
+        if useless:
+            allowed = f"left out for {path}: headings and units of an OpenSim file are its own"
+            raise InvalidInput("the map of columns", ", ".join(useless), allowed)
         return read_opensim(path, notes)
     if suffix in CSV:
         return read_csv_table(path, columns, wanted)

@@ -12,11 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from drakegait.errors import InvalidInput
 from drakegait.program.design import PHASE_DURATIONS
 from drakegait.program.gait_program import GaitProgram
 from drakegait.program.guess import fit_forces, guess_from_reference, reference_values
-from drakegait.quantities import is_whole
+from drakegait.quantities import check_count
 from drakegait.reference.reference import Reference
 from drakegait.transcription.design_vector import DesignValues
 
@@ -109,8 +108,7 @@ def starts(count: int, seed: int = 0) -> list[Start]:
         InvalidInput: a count below 1 or above `MOST_STARTS`, or a negative seed.
     """
     for name, value, low, high in (("starts", count, 1, MOST_STARTS), ("seed", seed, 0, 2**31)):
-        if not is_whole(value) or not low <= value <= high:
-            raise InvalidInput(name, value, f"a whole number from {low} to {high}")
+        check_count(name, value, low, high)
     generator = np.random.default_rng(seed)
     levels = generator.uniform(*NOISE_LEVELS, size=count)
     noisy = [Start(NOISE, float(level), (seed, k)) for k, level in enumerate(levels, 1)]

@@ -191,8 +191,7 @@ def compare(
 def default_labels(gaits: Sequence[Gait]) -> tuple[str, ...]:
     """Names by what makes the later gaits differ from the first."""
     first = gaits[0].study
-    special = [*words.worn(first), *words.strengths(first), *words.disorders(first)]
-    found = [", ".join(special) or "baseline"]
+    found = [", ".join(words.peculiar(first)) or "baseline"]
     found += [", ".join(words.differences(first, gait.study)) for gait in gaits[1:]]
     named = []
     for number, label in enumerate(found):

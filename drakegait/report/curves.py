@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drakegait.quantities import GRAVITY
+from drakegait.report.study_words import peculiar
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -164,15 +165,13 @@ def curves_of(gait: Gait, others: tuple[Gait, ...]) -> list[GaitCurves]:
 def _statements(gait: Gait) -> dict[str, str]:
     """What a reader would call a study by, in words."""
     study = gait.study
-    worn = " and ".join(f"{item.mass:g} kg on {item.segment}" for item in study.added_masses)
-    weak = " and ".join(f"{name} x{factor:g}" for name, factor in study.strength.items())
-    subject = study.subject
+    subject, reference = study.subject, study.reference_walk.name
     return {
         "model": study.model,
         "nodes": f"{study.nodes} nodes",
         "speed": f"{gait.speed:.2f} m/s",
         "subject": f"{subject.height:.2f} m, {subject.mass:g} kg",
-        "worn": worn or "no added mass",
-        "strength": weak or "full strength",
+        "peculiar": ", ".join(peculiar(study)) or "unchanged walker",
+        "reference": f'reference "{reference}"',
         "weights": f"weights {study.energy_weight:g}/{study.deviation_weight:g}",
     }

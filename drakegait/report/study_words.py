@@ -19,7 +19,7 @@ _SEGMENTS = {"hat": "trunk"}
 # Statements that have a sentence of their own below.
 _TOLD = {"subject", "added_masses", "strength", "disorders", "limits", "reference", "sdf", "nodes",
          "speed", "model", "energy_weight", "deviation_weight", "planar_muscles",
-         "interior_points"}  # fmt: skip
+         "muscle_changes", "interior_points"}  # fmt: skip
 
 
 def spoken(name: str) -> str:
@@ -53,6 +53,16 @@ def strengths(study: GaitStudy) -> list[str]:
     return found
 
 
+def entries(study: GaitStudy) -> list[str]:
+    """Entries of the muscle table that are other ones."""
+    units = {"f_max": " N", "l_opt": " m", "l_slack": " m", "l0": " m"}
+    return [
+        f"{entry} of {muscle} {value:g}{units.get(entry, '')}"
+        for muscle, changed in study.muscle_changes.items()
+        for entry, value in changed.items()
+    ]
+
+
 def disorders(study: GaitStudy) -> list[str]:
     """Disorders in their own words."""
     return [item.describe() for item in getattr(study, "disorders", ())]
@@ -70,12 +80,23 @@ def limits(study: GaitStudy) -> list[str]:
     return found
 
 
-def who(study: GaitStudy) -> str:
-    """The walker in a phrase."""
+_STATEMENTS = (worn, strengths, entries, disorders, limits)
+
+
+def who(study: GaitStudy, longest: int | None = None) -> str:
+    """The walker in a phrase; of what does not fit into `longest` characters it says "and more"."""
     subject = study.subject
-    first = f"{study.model} walker, {subject.height:.2f} m, {subject.mass:g} kg"
-    more = [*worn(study), *strengths(study), *disorders(study), *limits(study)]
-    return ", ".join([first, *more])
+    phrases = [f"{study.model} walker, {subject.height:.2f} m, {subject.mass:g} kg"]
+    for phrase in peculiar(study):
+        if longest is not None and len(", ".join([*phrases, phrase])) > longest:
+            return ", ".join([*phrases, "and more"])
+        phrases.append(phrase)
+    return ", ".join(phrases)
+
+
+def peculiar(study: GaitStudy) -> list[str]:
+    """What this walker wears, has and lacks, a phrase each."""
+    return [phrase for phrases in _STATEMENTS for phrase in phrases(study)]
 
 
 def differences(base: GaitStudy, other: GaitStudy) -> list[str]:
@@ -85,7 +106,7 @@ def differences(base: GaitStudy, other: GaitStudy) -> list[str]:
     only `base` has begins with "without", and everything that is a number says both values.
     """
     found: list[str] = []
-    for phrases in (worn, strengths, disorders, limits):
+    for phrases in _STATEMENTS:
         mine, theirs = Counter(phrases(other)), Counter(phrases(base))
         found += (mine - theirs).elements()
         found += [f"without {text}" for text in (theirs - mine).elements()]

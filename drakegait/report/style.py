@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drakegait.report.curves import GaitCurves
+from drakegait.report.study_words import who
 from drakegait.whole_file import beside
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ PHASE_COLOURS = 2 * ("#dde4ec", "#e8edf2", "#f6f8fa", "#eff3f6")
 OTHER_STYLES = ("--", ":", "-.", (0, (1, 2)))
 FORMATS = ("svg", "png")
 _PNG_DPI = 130
+_LONGEST_SUBTITLE = 110  # characters of who walks
 _LOOK = {
     "font.size": 8,
     "font.family": "sans-serif",
@@ -84,12 +86,11 @@ def panel_figure(
 
 def subtitle_of(curves: GaitCurves) -> str:
     """Who walks, in a line."""
-    gait, subject = curves.gait, curves.gait.study.subject
+    gait = curves.gait
     cadence = 120.0 / float(gait.values.stride_time)
-    worn = "".join(f", {m.mass:g} kg on {m.segment}" for m in gait.study.added_masses)
     state = "" if gait.converged else "   NOT CONVERGED"
     return (
-        f"{gait.study.model} model, {subject.height:.2f} m, {subject.mass:g} kg{worn}; "
+        f"{who(gait.study, _LONGEST_SUBTITLE)}; "
         f"{gait.speed:.2f} m/s, {cadence:.0f} steps/min, stride {gait.stride_length:.2f} m{state}"
     )
 

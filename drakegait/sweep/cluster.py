@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from drakegait.errors import DrakegaitError, InvalidInput
+from drakegait.quantities import check_count
 from drakegait.sweep.worker import versions
 
 if TYPE_CHECKING:
@@ -52,9 +53,8 @@ def check_place(workers: int | None, scheduler: str | None) -> None:
         InvalidInput: naming it.
         DrakegaitError: Dask is not installed.
     """
-    whole = isinstance(workers, int) and not isinstance(workers, bool)
-    if workers is not None and not (whole and 1 <= workers <= 1024):
-        raise InvalidInput("workers", workers, "a whole number from 1 to 1024")
+    if workers is not None:
+        check_count("workers", workers, 1, 1024)
     if workers is not None and scheduler is not None:
         raise InvalidInput("workers", workers, "left out with a scheduler, which has its own")
     if scheduler is not None and "://" not in str(scheduler):

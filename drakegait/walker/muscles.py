@@ -32,6 +32,8 @@ PLANAR_SETS = ("table3", "gait2d")
 STRENGTH_LIMITS = (0.01, 10.0)
 """Allowed factors on a muscle's maximal force."""
 
+ENTRY_FACTOR = 5.0
+"""An entry of the table may be changed to so many times its value, or to its inverse."""
 _CHANGEABLE = {
     "f_max": "f_max_N",
     "l_opt": "l_opt_m",
@@ -119,10 +121,17 @@ class MuscleSet:
         for name, entries in (changes or {}).items():
             for i in select(name, names, groups):
                 for entry, value in entries.items():
-                    sided[i][_table_column(entry)] = _positive(f"{entry} of {name}", value)
+                    column_name = _table_column(entry)
+                    usual = float(rows[i % len(rows)][column_name])
+                    sided[i][column_name] = _entry(f"{entry} of {name}", value, usual)
         factor = np.ones(len(names))
+        stated: dict[int, str] = {}
         for name, value in (strength or {}).items():
-            factor[select(name, names, groups)] *= _strength(name, value)
+            for i in select(name, names, groups):
+                if i in stated:
+                    allowed = f"stated once for each muscle; {stated[i]} states {names[i]}, too"
+                    raise InvalidInput("strength", f"{value} for {name}", allowed)
+                stated[i], factor[i] = name, _strength(name, value)
 
         def column(header: str) -> np.ndarray:
             return np.array([float(row[header]) for row in sided])
@@ -242,9 +251,12 @@ def _table_column(entry: str) -> str:
     return _CHANGEABLE[entry]
 
 
-def _positive(name: str, value: float) -> float:
-    if not is_number(value) or value <= 0:
-        raise InvalidInput(name, value, "a number above 0")
+def _entry(name: str, value: float, usual: float) -> float:
+    """Refuse what is far from the table: most likely another unit."""
+    low, high = usual / ENTRY_FACTOR, usual * ENTRY_FACTOR
+    if not is_number(value) or not low <= value <= high:
+        allowed = f"a number from {low:.3g} to {high:.3g}, as the table has {usual:g}"
+        raise InvalidInput(name, value, allowed)
     return value
 
 

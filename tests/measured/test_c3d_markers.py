@@ -100,6 +100,12 @@ def test_a_map_names_the_markers(tmp_path, markers):
             import_walk(tmp_path / "walk.c3d", tmp_path / "walk.c3d", columns=table, **SIZE)
 
 
+def test_markers_in_another_unit_than_the_file_says_are_refused(tmp_path, markers):
+    write_c3d(tmp_path / "walk.c3d", LAB, {name: place / 1000.0 for name, place in markers.items()})
+    with pytest.raises(BadFile, match=r"0.000\d* m from the heel, in its unit 'mm'.*unit wrong"):
+        import_walk(tmp_path / "walk.c3d", tmp_path / "walk.c3d", **SIZE)
+
+
 @pytest.mark.parametrize("name", [NEEDED[0], "LTOE", "LPSI"])
 def test_a_missing_marker_is_named(tmp_path, markers, name):
     some = {label: place for label, place in markers.items() if label != name}

@@ -11,7 +11,7 @@ from measured_cases import SUBJECT, Lab, write_csv, write_mot
 
 from drakegait import cli
 from drakegait.commands.request import WalkRequest
-from drakegait.errors import BadFile, UnknownName
+from drakegait.errors import BadFile, InvalidInput, UnknownName
 from drakegait.measured import ImportedWalk, import_walk
 from drakegait.reference.netcdf_file import read_subject
 from drakegait.reference.reference import Reference
@@ -46,6 +46,23 @@ def test_force_plates_of_a_c3d_file(tmp_path, files, walk):
     ours = take((files[0], tmp_path / "trial.c3d"))
     assert any("vertical" in sentence and "along" in sentence for sentence in ours.warnings)
     assert same_forces(ours, walk, 10.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "words"),
+    [
+        ('angle_unit = "rad"\n', InvalidInput, "angle_unit.*headings and units of an OpenSim"),
+        ('[columns]\npelvis_tilt = "lean"\n', InvalidInput, "columns.pelvis_tilt.*OpenSim file"),
+        ('[sides]\nnosuchplate = "left"\n', UnknownName, "nosuchplate"),
+        ("columns = 3\n", InvalidInput, "columns is 3.*a table of names"),
+        ('sides = "left"\n', InvalidInput, "sides is 'left'.*a table of names"),
+        ("markers = [1]\n", InvalidInput, "markers is .*a table of names"),
+    ],
+)
+def test_a_map_that_says_nothing_of_these_files_is_refused(tmp_path, files, text, error, words):
+    (tmp_path / "map.toml").write_text(text)
+    with pytest.raises(error, match=words):
+        take(files, columns=tmp_path / "map.toml")
 
 
 def test_a_broken_c3d_file_is_refused(tmp_path, files):

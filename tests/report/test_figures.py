@@ -206,11 +206,11 @@ def test_others_are_dashed_and_named_by_their_difference():
     gait = reference_gait("planar")
     heavy = dataclasses.replace(gait, study=gait.study.with_added_mass("foot_r", 2.0))
     both = curves_of(gait, (heavy,))
-    assert [item.label for item in both] == ["no added mass", "2 kg on foot_r"]
+    assert [item.label for item in both] == ["unchanged walker", "2 kg on the right foot"]
     assert len({item.label for item in curves_of(gait, (gait, gait))}) == 3
     figure = joint_angles(both)
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert "2 kg on foot_r" in texts and "reference" in texts
+    assert "2 kg on the right foot" in texts and "reference" in texts
     colour = style.SIDE_COLOURS["right"]
     axes = panel(figure, "Knee flexion")
     np.testing.assert_allclose(drawn(axes, colour, None), drawn(axes, colour))

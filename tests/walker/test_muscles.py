@@ -146,7 +146,7 @@ def test_arrays_are_frozen():
         (dict(kind="spatial", strength={"SOL": 0.0}), InvalidInput, "factor from 0.01 to 10"),
         (dict(kind="spatial", strength={"SOL": float("nan")}), InvalidInput, "factor from"),
         (dict(kind="spatial", changes={"SOL": {"slack": 1.0}}), UnknownName, "l_slack"),
-        (dict(kind="spatial", changes={"SOL": {"l_slack": -1.0}}), InvalidInput, "above 0"),
+        (dict(kind="spatial", changes={"SOL": {"l_slack": -1.0}}), InvalidInput, "from 0.0508 to"),
     ],
 )
 def test_bad_input_is_named(arguments, error, words):
