@@ -155,7 +155,7 @@ class Rounds:
         worst = () if solution.status == "converged" else tuple(program.worst(solution.x))
         parts = program.cost_parts(solution.x)
         message = MESSAGES[solution.status]
-        if solution.status not in ("time_limit", "interrupted"):  # then the solver knows no more
+        if solution.detail and solution.status not in ("time_limit", "interrupted"):
             message += f" ({solution.detail})"
         outcome = Outcome(
             solver=self.options.solver,

@@ -16,11 +16,12 @@ from drakegait.errors import InvalidInput, UnknownName
 from drakegait.quantities import check_number, plain
 
 
-def quantity(default: float, unit: str, low: float, high: float, meaning: str) -> Any:
-    """Declare a number with its unit and closed allowed range."""
-    return dataclasses.field(
-        default=default, metadata={"unit": unit, "low": low, "high": high, "meaning": meaning}
-    )
+def quantity(
+    default: float, unit: str, low: float, high: float, meaning: str, whole: bool = False
+) -> Any:
+    """Declare a number with its unit and closed allowed range; `whole` numbers have no fraction."""
+    declared = {"unit": unit, "low": low, "high": high, "meaning": meaning, "whole": whole}
+    return dataclasses.field(default=default, metadata=declared)
 
 
 def choice(default: str, options: Sequence[str], meaning: str) -> Any:
@@ -118,3 +119,5 @@ def _validate(field: dataclasses.Field, value: Any) -> None:
             raise InvalidInput(field.name, value, "True or False")
     elif "unit" in meta:
         check_number(field.name, value, meta["low"], meta["high"], meta["unit"])
+        if meta["whole"] and value != int(value):
+            raise InvalidInput(field.name, value, "a whole number")

@@ -21,7 +21,7 @@ import numpy as np
 from drakegait.errors import InvalidInput, UnknownName
 from drakegait.program.formulation import Formulation, JointLimit, Tolerances
 from drakegait.program.variants import Variants
-from drakegait.quantities import check_number
+from drakegait.quantities import check_count, check_number, is_whole
 from drakegait.reference.deviation import DeviationSettings
 from drakegait.reference.reference import Reference
 from drakegait.reference.sequence import in_sequence
@@ -122,9 +122,9 @@ class GaitStudy:
             raise InvalidInput("weights", (0.0, 0.0), "positive in at least one place")
         if self.reference is not None and self.reference.kind != self.skeleton_kind:
             raise InvalidInput("kind of the reference", self.reference.kind, self.skeleton_kind)
-        phases = 4 if self.symmetric else 8
-        if self.interior_points is not None and len(self.interior_points) != phases:
-            raise InvalidInput("interior_points", self.interior_points, f"{phases} counts")
+        phases, points = 4 if self.symmetric else 8, self.interior_points
+        if points is not None and not (len(points) == phases and all(map(is_whole, points))):
+            raise InvalidInput("interior_points", points, f"{phases} whole numbers")
         names = [name for name in coordinates.names(self.skeleton_kind) if name != "hat_x"]
         for limit in self.limits:
             if limit.coordinate not in names:
@@ -133,10 +133,7 @@ class GaitStudy:
         check_limits(self.all_limits)
 
     def _check_nodes(self) -> None:
-        whole = isinstance(self.nodes, (int, np.integer)) and not isinstance(self.nodes, bool)
-        if not whole or not FEWEST_NODES <= self.nodes <= MOST_NODES:
-            allowed = f"a whole number from {FEWEST_NODES} to {MOST_NODES}"
-            raise InvalidInput("nodes", self.nodes, allowed)
+        check_count("nodes", self.nodes, FEWEST_NODES, MOST_NODES)
         if self.symmetric and self.nodes % 2 == 0:
             allowed = "odd for a symmetric model (a node must lie at half the cycle)"
             raise InvalidInput("nodes", self.nodes, allowed)

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from drakegait.errors import UnknownName
+from drakegait.errors import InvalidInput, UnknownName
 from drakegait.program.formulation import JointLimit
 from drakegait.settings import Settings
 from drakegait.walker.disorders import from_plain, to_plain
@@ -53,6 +53,9 @@ def study_statements(
     for name in values:
         if name not in known:
             raise UnknownName("study key", name, sorted(known))
+    for name in ("added_masses", "limits", "disorders", "interior_points"):
+        if not isinstance(values.get(name, ()), (list, tuple, type(None))):
+            raise InvalidInput(name, values[name], "a list")
     for name, group in groups.items():
         if name in values:
             values[name] = group(**values[name])

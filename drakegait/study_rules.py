@@ -11,7 +11,7 @@ import numpy as np
 from drakegait.errors import InvalidInput
 from drakegait.program.design import RANGES
 from drakegait.program.formulation import JointLimit
-from drakegait.walker.coordinates import other_side, without_side
+from drakegait.walker.coordinates import TRANSLATIONS, other_side, without_side
 from drakegait.walker.subject import AddedMass
 
 if TYPE_CHECKING:
@@ -63,7 +63,10 @@ def check_both_sides(study: GaitStudy) -> None:
                 raise InvalidInput(what, f"{value} for {name}", _BOTH)
     for item in study.limits:
         if mirrored_limit(item) not in study.limits:
-            given = f"{item.low:g} to {item.high:g} of {item.coordinate}"
+            turn = item.coordinate not in TRANSLATIONS
+            low, high = (np.degrees(x) if turn else x for x in (item.low, item.high))
+            unit = "degrees" if turn else "m"
+            given = f"{low:.4g} to {high:.4g} {unit} of {item.coordinate}"
             raise InvalidInput("limit", given, _BOTH)
 
 

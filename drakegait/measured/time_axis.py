@@ -14,6 +14,7 @@ from drakegait.errors import BadFile, InvalidInput
 from drakegait.measured.notes import Notes
 
 LONGEST_GAP = 0.1
+_LONGEST_STEP = 0.1  # [s] between rows
 """Gap that is interpolated [s]; a walking knee turns by up to 40 degrees in it."""
 
 
@@ -53,7 +54,7 @@ def in_order(path: str, time: np.ndarray, values: np.ndarray, notes: Notes):
     """Time and values with rows sorted by time.
 
     Raises:
-        BadFile: two rows of one instant.
+        BadFile: two rows of one instant, or steps with which nobody measures walking.
     """
     if (np.diff(time) < 0.0).any():
         order = np.argsort(time, kind="stable")
@@ -66,6 +67,9 @@ def in_order(path: str, time: np.ndarray, values: np.ndarray, notes: Notes):
             f"has {same.size} rows twice or with different values for one instant, the first at "
             f"{time[same[0]]:g} s; remove them.",
         )
+    step = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+    if step > _LONGEST_STEP:
+        raise BadFile(path, f"has a row every {step:.4g} s; is its time in ms?")
     return time, values
 
 
@@ -99,7 +103,7 @@ def without_gaps(
             after = time[end] if end < time.size else np.inf
             if after - before > LONGEST_GAP:
                 usable[start:end] = False
-                longest.append((name, time[start], time[end - 1]))
+                longest.append((name, max(before, time[0]), min(after, time[-1])))
             else:
                 closed.append(name)
     if closed:

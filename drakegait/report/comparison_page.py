@@ -55,6 +55,7 @@ def render(comparison: Comparison) -> str:
         title="Comparison of gaits" if len(labels) > 1 else "Gait report",
         labels=labels,
         colours=look.GAIT_COLOURS,
+        spatial=base.skeleton_kind == "spatial",
         troubles=troubles(numbers),
         headline=headline(numbers),
         walkers=[

@@ -107,13 +107,13 @@ class GaitNumbers:
         )
 
     def cost_by_muscle(self, groups: Sequence[str]) -> tuple[Measure, ...]:
-        """Cost of each muscle group of each leg."""
+        """Cost of each muscle group of each leg; a muscle that is not there takes none."""
         return tuple(
             measure
             for group in groups
             for measure in both_sides(
                 group, group.replace("_", " ").capitalize(), "J/m",
-                *(self.split.of_group(group, side) for side in SIDES), 1,
+                *(np.nan_to_num(self.split.of_group(group, side)) for side in SIDES), 1,
             )
         )  # fmt: skip
 

@@ -14,6 +14,7 @@ from drakegait.report.curves import SIDES
 from drakegait.report.measures import number_text
 from drakegait.report.study_words import differences, who
 from drakegait.report.symmetry import UNIT
+from drakegait.walker.disorders import Prosthesis
 
 if TYPE_CHECKING:
     from drakegait.study import GaitStudy
@@ -91,6 +92,12 @@ def cost_hindrances(base: GaitStudy, other: GaitStudy) -> list[str]:
 def incomparable(base: GaitStudy, other: GaitStudy) -> list[str]:
     """All reasons to read the comparison of two studies with care."""
     found = cost_hindrances(base, other)
+    if _artificial(base) != _artificial(other):
+        found.append(
+            "one walks with a prosthesis: muscles that are not there take no energy, and what the "
+            "stump has to bear is not in the model. Do not read the cost of transport as that of "
+            "a person."
+        )
     if base.symmetric != other.symmetric:
         found.append("one of them was forced to walk with equal sides, the other was free.")
     if base.tolerances != other.tolerances:
@@ -110,6 +117,10 @@ def incomparable(base: GaitStudy, other: GaitStudy) -> list[str]:
     if first.name != second.name:
         found.append("they were held to different reference walks; the band is that of the first.")
     return found
+
+
+def _artificial(study: GaitStudy) -> bool:
+    return any(isinstance(item, Prosthesis) for item in study.disorders)
 
 
 @dataclass(frozen=True)
@@ -176,10 +187,11 @@ def _cost(base: GaitNumbers, other: GaitNumbers, hindered: bool) -> list[str]:
     legs = other.split.by_side - base.split.by_side
     groups = tuple(dict.fromkeys((*base.split.groups, *other.split.groups)))
     table = rows([item.cost_by_muscle(groups) for item in (base, other)])
-    known = [row for row in table if np.isfinite(row.changes[0])]
-    most = sorted(known, key=lambda row: -row.changes[0] * np.sign(change))[:3]
+    most = sorted(table, key=lambda row: -abs(row.changes[0]))[:3]
     named = ", ".join(
-        f"{row.side} {row.label.lower()} {number_text(row.changes[0], 1, True)}" for row in most
+        f"{row.side} {row.label.lower()} {number_text(row.changes[0], 1, True)}"
+        + (" (not there)" if np.isnan(other.split.of_group(row.name, row.side)) else "")
+        for row in most
     )
     return [
         text,

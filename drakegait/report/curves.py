@@ -7,6 +7,7 @@ counted from left heel strike.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -162,6 +163,11 @@ def curves_of(gait: Gait, others: tuple[Gait, ...]) -> list[GaitCurves]:
     ]  # fmt: skip
 
 
+def _short(text: str) -> str:
+    """Without what stands in brackets: a name has to fit into a legend."""
+    return re.sub(r" \([^()]*\)", "", text)
+
+
 def _statements(gait: Gait) -> dict[str, str]:
     """What a reader would call a study by, in words."""
     study = gait.study
@@ -171,7 +177,7 @@ def _statements(gait: Gait) -> dict[str, str]:
         "nodes": f"{study.nodes} nodes",
         "speed": f"{gait.speed:.2f} m/s",
         "subject": f"{subject.height:.2f} m, {subject.mass:g} kg",
-        "peculiar": ", ".join(peculiar(study)) or "unchanged walker",
+        "peculiar": _short(", ".join(peculiar(study))) or "unchanged walker",
         "reference": f'reference "{reference}"',
         "weights": f"weights {study.energy_weight:g}/{study.deviation_weight:g}",
     }

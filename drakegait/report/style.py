@@ -6,6 +6,7 @@ program that draws figures of its own.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -30,6 +31,8 @@ PHASE_COLOURS = 2 * ("#dde4ec", "#e8edf2", "#f6f8fa", "#eff3f6")
 OTHER_STYLES = ("--", ":", "-.", (0, (1, 2)))
 FORMATS = ("svg", "png")
 _PNG_DPI = 130
+_NARROW = 8.0  # [inch] below which a figure has title, names and legend below each other
+_CHARACTERS = 16.0  # of a subtitle, per inch
 _LONGEST_SUBTITLE = 110  # characters of who walks
 _LOOK = {
     "font.size": 8,
@@ -66,8 +69,10 @@ def panel_figure(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    left, right, top, bottom, gap_x, gap_y = 0.5, 0.15, 0.95, 0.42, 0.42, 0.42
+    left, right, bottom, gap_x, gap_y = 0.5, 0.15, 0.42, 0.42, 0.42
     width = left + right + columns * panel[0] + (columns - 1) * gap_x
+    top = 1.2 if width < _NARROW else 0.95
+    subtitle = textwrap.fill(subtitle, round(_CHARACTERS * width))
     height = top + bottom + rows * panel[1] + (rows - 1) * gap_y
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)
@@ -154,7 +159,7 @@ def legend(
     figure: Figure, all_curves: Sequence[GaitCurves], reference: str | None,
     body: bool = False, toe_off: bool = True,
 ) -> None:  # fmt: skip
-    """One legend for the whole figure, upper right."""
+    """One legend for the whole figure: beside the title, in a narrow one below it."""
     from matplotlib.lines import Line2D
 
     handles = [
@@ -172,13 +177,16 @@ def legend(
     if toe_off:
         handles.append(Line2D([], [], color="#777777", lw=0.7, ls=(0, (4, 2)), label="toe off"))
     width, height = figure.get_size_inches()
+    narrow = width < _NARROW
+    place = (0.4 / width, 1 - 0.62 / height) if narrow else (1 - 0.1 / width, 1 - 0.08 / height)
     figure.legend(
-        handles=handles, loc="upper right", bbox_to_anchor=(1 - 0.1 / width, 1 - 0.08 / height),
-        ncols=len(handles), fontsize=7.5, frameon=False, handlelength=1.8, columnspacing=1.2,
+        handles=handles, loc="upper left" if narrow else "upper right", bbox_to_anchor=place,
+        ncols=len(handles), fontsize=7.0 if narrow else 7.5, frameon=False, handlelength=1.8,
+        columnspacing=1.2,
     )  # fmt: skip
     if toe_off:
         figure.text(
-            1 - 0.15 / width, 1 - 0.62 / height,
+            1 - 0.15 / width, 1 - (0.9 if narrow else 0.62) / height,
             "shaded: contact phases 1 to 8 of the right leg; each leg from its own heel strike",
             fontsize=7, color="#7a8796", ha="right", va="top",
         )  # fmt: skip

@@ -45,7 +45,7 @@ class SolverOptions(Settings):
         "condensed and ipopt-mumps also end where the cost has changed by less than this part of "
         "itself in 25 iterations that obey all laws (paper: 1e-2 spatial, 1e-4 planar); 0: never",
     )
-    max_iterations: float = quantity(500, "-", 1, 1e5, "iterations in one round")
+    max_iterations: float = quantity(500, "-", 1, 1e5, "iterations in one round", True)
     time_limit: float = quantity(3600.0, "s", 0.1, 1e6, "wall time of the whole solve")
     barrier_start: float = quantity(
         0.0, "-", 0.0, 10.0, "first barrier parameter; 0: chosen (warm: small)"

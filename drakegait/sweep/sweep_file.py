@@ -189,7 +189,8 @@ def _listed(
     for number, entry in enumerate(entries, 1):
         where = f"[[study]] {number}"
         if not isinstance(entry, Mapping) or not isinstance(entry.get("name"), str):
-            raise InvalidInput(f"{where}: name", None, "a name, text in quotes")
+            given = entry.get("name") if isinstance(entry, Mapping) else entry
+            raise InvalidInput(f"{where}: name", given, "a name, text in quotes")
         name = entry["name"]
         if name in studies:
             raise InvalidInput(f"{where}: name", name, "another name than those before")

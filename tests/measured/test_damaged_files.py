@@ -72,6 +72,23 @@ def test_short_gaps_are_closed_and_long_ones_avoided(files):
     assert all(row["end_s"] < 1.5 or row["start_s"] > 2.2 for row in walk.quality.strides)
 
 
+def test_a_gap_is_told_from_the_last_row_before_it_to_the_first_behind(files):
+    columns = LAB.motion()
+    first = 70
+    columns["knee_angle_r"][first : first + 20] = np.nan
+    write_mot(files[0], columns)
+    said = " ".join(take(files).warnings)
+    ends = columns["time"][[first - 1, first + 20]]
+    assert f"from {ends[0]:.3f} to {ends[1]:.3f} s" in said
+
+
+def test_a_time_in_milliseconds_is_refused(files):
+    columns = LAB.motion()
+    columns["time"] = 1000.0 * columns["time"]
+    write_mot(files[0], columns)
+    refused(files, BadFile, files[0].name, "a row every", "in ms?")
+
+
 def test_gaps_everywhere_are_refused(files):
     knee = LAB.motion()["knee_angle_r"]
     knee[::1] = np.where(np.arange(knee.size) % 60 < 30, knee, np.nan)

@@ -19,6 +19,7 @@ from drakegait.report.comparison_words import cost_hindrances, headline, incompa
 from drakegait.report.measures import number_text
 from drakegait.report.study_words import differences, spoken, who
 from drakegait.study import GaitStudy
+from drakegait.walker.disorders import Prosthesis
 
 pytest.importorskip("jinja2")
 NAME = "foot <b>heavy</b> & slow"
@@ -400,3 +401,22 @@ def test_command_writes_page_and_tables(normal, heavy, tmp_path, capsys):
     assert run("compare", *gaits, "--labels", "a,b,c") == 2
     assert "one for each gait" in capsys.readouterr().err
     assert run("compare", str(tmp_path / "nothing.nc")) == 2
+
+
+def test_muscles_that_a_prosthesis_replaces_take_part_in_the_sum():
+    whole = reference_gait("planar")
+    fewer = reference_gait("planar", disorders=(Prosthesis("r"),))
+    found = compare(whole, fewer, labels=("whole", "prosthesis"))
+    before, after = (item.split for item in found.numbers)
+    (summary,) = headline(found.numbers)
+    gone = {
+        group: before.of_group(group, "right")
+        for group in ("soleus", "gastrocnemius", "tibialis_anterior")
+    }
+    most = max(gone, key=gone.get)
+    words = f"right {most.replace('_', ' ')} {number_text(-gone[most], 1, True)} (not there)"
+    assert words in " ".join(summary.sentences)
+    table = found.tables()["cost_by_muscle"]
+    changes = table[next(name for name in table if name.startswith("change"))]
+    assert changes.sum() == pytest.approx(after.total - before.total, abs=1e-6)
+    assert any("prosthesis" in item.text for item in troubles(found.numbers))
