@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 import json
 import os
@@ -11,6 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from gait_cases import reference_gait
 
@@ -422,14 +424,28 @@ def test_the_summary_is_valid_json_and_replaced_at_once(tmp_path, monkeypatch):
 # Walking -----------------------------------------------------------------------------------
 
 
+HASTY = ("--no-pictures", "--no-refine", "--set", "optimality=0.01")
+
+
 @pytest.fixture(scope="module")
 def walked(tmp_path_factory) -> tuple[subprocess.CompletedProcess, Path]:
     out = tmp_path_factory.mktemp("walk") / "new" / "folder"
-    running = process(
-        "walk", *TINY, "--out", out, "--no-pictures", "--no-refine", "--set", "optimality=0.01",
-    )  # fmt: skip
+    running = process("walk", *TINY, "--out", out, *HASTY)
     printed, err = running.communicate(timeout=300)
     return subprocess.CompletedProcess([], running.returncode, printed, err), out
+
+
+@pytest.mark.solve
+def test_another_process_finds_the_same_bits(walked, tmp_path):
+    _, out = walked
+    process("walk", *TINY, "--out", tmp_path, *HASTY).communicate(timeout=300)
+    one, other = (Gait.load(folder / "gait.nc") for folder in (out, tmp_path))
+    assert one.outcome.iterations == other.outcome.iterations and one.cost == other.cost
+    for item in dataclasses.fields(one.values):
+        np.testing.assert_array_equal(
+            getattr(one.values, item.name), getattr(other.values, item.name), err_msg=item.name
+        )
+    np.testing.assert_array_equal(one.kkt.rows, other.kkt.rows)
 
 
 @pytest.mark.solve

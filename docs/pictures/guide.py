@@ -57,6 +57,7 @@ RUNS = (
     _example("heavy_foot", "--planar"),
     _example("weak_muscle"),
     _example("prosthesis"),
+    _example("disorders"),
     _SWEEP,
 )
 """In an order in which each finds what it needs."""
