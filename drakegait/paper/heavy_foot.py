@@ -11,6 +11,9 @@ from drakegait.paper.numbers import Gaits, Numbers
 
 SENSE = 1.0
 """Least change of an angle that counts [degree]."""
+SILENT, SHARED = 0.1, 0.05
+"""Excitations below which an antagonist counts as silent, above which two muscles co-contract."""
+_CALF = ("soleus_r", "gastrocnemius_r")
 FORCE = 0.5
 """Least change of a mean force that counts [% of body weight]."""
 
@@ -43,6 +46,15 @@ def measured(normal: Gait, heavy: Gait) -> dict[str, float]:
             f"tibialis anterior 60-70 {when}": measures.excitation_peak(
                 gait, "tibialis_anterior_r", 60.0, 70.0
             ),
+            f"calf at the peak of tibialis anterior {when}": measures.excitation_at_peak(
+                gait, "tibialis_anterior_r", _CALF, 0.0, 100.0
+            ),
+            f"shared by tibialis anterior and calf {when}": measures.shared_excitation(
+                gait, "tibialis_anterior_r", _CALF, 0.0, 20.0
+            ),
+            f"hamstrings at the late peak of rectus femoris {when}": measures.excitation_at_peak(
+                gait, "rectus_femoris_r", ("hamstrings_r",), 60.0, 100.0
+            ),
         }
     names = measures.angle_names(normal)
     changes = measures.angle_changes(normal, heavy, names)
@@ -53,6 +65,12 @@ def measured(normal: Gait, heavy: Gait) -> dict[str, float]:
         "largest change of an angle": changes.max(),
         "angles that share the change": measures.spread(changes),
         "change of reactions": measures.reaction_change(normal, heavy),
+        "change of left reactions": measures.reaction_change(normal, heavy, ["left"]),
+        "change of right reactions": measures.reaction_change(normal, heavy, ["right"]),
+        "change of pitch, first half": measures.angle_change(normal, heavy, "hat_tilt", 0.0, 50.0),
+        "change of pitch, second half": measures.angle_change(
+            normal, heavy, "hat_tilt", 50.0, 100.0
+        ),
         "change of left excitations": measures.excitation_change(normal, heavy, "left"),
         "change of right excitations": measures.excitation_change(normal, heavy, "right"),
     }

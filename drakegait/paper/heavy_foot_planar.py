@@ -12,6 +12,8 @@ from drakegait.paper.heavy_foot import (
     FORCE,
     LIFTS_LESS,
     SENSE,
+    SHARED,
+    SILENT,
     energy_and_deviation,
     measure_of,
     pair,
@@ -22,6 +24,8 @@ from drakegait.study import GaitStudy
 
 NORMAL, HEAVY = "planar", "planar 2 kg"
 NODES = 18
+_SIMILAR = 5.0  # change of a force that counts as quite similar, root mean square [% BW]
+_WALKS = ("normal", "heavy")
 
 
 def studies(symmetric: Gait) -> Studies:
@@ -114,6 +118,41 @@ CHAPTER = Chapter(
             lambda n: verdict.grows(n["right late stance force normal"],
                                     n["right late stance force heavy"], FORCE),
             "yes: its mean over the last quarter of stance grows by more than 0.5 % of body weight",
+        ),
+        Claim(
+            "Left contact forces stay quite similar",
+            "4.2, figure 7", "",
+            lambda n: f"change on the left {n['change of left reactions']:.1f}, on the right "
+            f"{n['change of right reactions']:.1f} % BW (root mean square)",
+            lambda n: verdict.every(
+                verdict.falls(n["change of right reactions"], n["change of left reactions"], 0.05),
+                verdict.below(n["change of left reactions"], _SIMILAR)),
+            "yes: root mean square change of vertical and fore-aft force below 5 % of body weight, "
+            "and smaller than on the right by over 5 %",
+            "They stay similar; so do those of the right foot but for the end of its stance.",
+        ),
+        Claim(
+            "In the first 20 % tibialis anterior and the calf co-contract",
+            "4.2, figure 8", "", pair("shared by tibialis anterior and calf", "", 3),
+            lambda n: verdict.every(*(
+                verdict.grows(0.0, n[f"shared by tibialis anterior and calf {when}"], SHARED)
+                for when in _WALKS)),
+            "yes: in both walks TA and SOL or GAS are excited above 0.05 at the same time",
+        ),
+        Claim(
+            "At the peak of tibialis anterior soleus and gastrocnemius are silent",
+            "4.2, figure 8", "", pair("calf at the peak of tibialis anterior", "", 3),
+            lambda n: verdict.every(*(
+                verdict.below(n[f"calf at the peak of tibialis anterior {when}"], SILENT)
+                for when in _WALKS)),
+            "yes: in both walks both are excited below 0.1 when TA is excited most",
+        ),
+        Claim(
+            "With the weight, hamstrings are silent at the late peak of rectus femoris",
+            "4.2, figure 8", "", pair("hamstrings at the late peak of rectus femoris", "", 3),
+            lambda n: verdict.below(n["hamstrings at the late peak of rectus femoris heavy"],
+                                    SILENT),
+            "yes: excited below 0.1 when RF is excited most in the last 40 % of the stride",
         ),
     ),
     tables=lambda n: [tables.studies(n, [FINEST, NORMAL, HEAVY])],

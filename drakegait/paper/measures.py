@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from drakegait.gait import Gait
@@ -87,12 +89,45 @@ def late_stance_force(gait: Gait, side: str) -> float:
     return float(force[late].mean())
 
 
-def reaction_change(before: Gait, after: Gait) -> float:
-    """Root mean square change of vertical and fore-aft forces, both feet [% of body weight].
+def excitation_at_peak(
+    gait: Gait, muscle: str, others: Sequence[str], low: float, high: float
+) -> float:
+    """Largest excitation of `others` when `muscle` is excited most between two percentages."""
+    data = gait.sample()
+    within = (data.percent.values >= low) & (data.percent.values <= high)
+    at = int(np.argmax(np.where(within, data.excitation.sel(muscle=muscle).values, -np.inf)))
+    return float(data.excitation.sel(muscle=list(others)).values[at].max())
+
+
+def shared_excitation(
+    gait: Gait, muscle: str, others: Sequence[str], low: float, high: float
+) -> float:
+    """Largest excitation that `muscle` and one of `others` have together between two
+    percentages of the stride."""
+    data = gait.sample()
+    within = (data.percent.values >= low) & (data.percent.values <= high)
+    antagonist = data.excitation.sel(muscle=list(others)).values.max(axis=-1)
+    both = np.minimum(data.excitation.sel(muscle=muscle).values, antagonist)
+    return float(both[within].max())
+
+
+def angle_change(before: Gait, after: Gait, name: str, low: float, high: float) -> float:
+    """Root mean square change of an angle between two percentages of the stride [degree]."""
+    percent = before.sample().percent.values
+    within = (percent >= low) & (percent < high)
+    difference = angles(after, [name]) - angles(before, [name])
+    return float(np.sqrt(np.mean(difference[within] ** 2)))
+
+
+def reaction_change(before: Gait, after: Gait, feet: Sequence[str] = ("right", "left")) -> float:
+    """Root mean square change of vertical and fore-aft forces on the feet [% of body weight].
 
     Body weight is that of the subject without what it wears.
     """
-    forces = [g.sample().ground_reaction_force.sel(axis=["x", "z"]).values for g in (before, after)]
+    forces = [
+        gait.sample().ground_reaction_force.sel(axis=["x", "z"], foot=list(feet)).values
+        for gait in (before, after)
+    ]
     weight = before.study.subject.mass * GRAVITY
     return 100.0 * float(np.sqrt(np.mean((forces[1] - forces[0])[:-1] ** 2))) / weight
 

@@ -47,6 +47,27 @@ def test_a_moved_knee_shows_in_its_own_row_only(gait):
     )
 
 
+def test_antagonists_are_read_at_the_peak_and_together(gait):
+    muscle, others = "tibialis_anterior_r", ("soleus_r", "gastrocnemius_r")
+    peak = measures.excitation_peak(gait, muscle, 0.0, 100.0)
+    assert measures.excitation_at_peak(gait, muscle, (muscle,), 0.0, 100.0) == peak
+    assert measures.shared_excitation(gait, muscle, (muscle,), 0.0, 100.0) == peak
+    there = measures.excitation_at_peak(gait, muscle, others, 0.0, 100.0)
+    shared = measures.shared_excitation(gait, muscle, others, 0.0, 100.0)
+    assert min(there, peak) <= shared <= peak  # together at the peak, and perhaps more elsewhere
+    halves = ((0.0, 50.0), (50.0, 100.0))
+    assert shared == max(
+        measures.shared_excitation(gait, muscle, others, *ends) for ends in halves
+    )
+
+
+def test_the_change_of_an_angle_is_split_over_the_stride(gait):
+    moved = gait.with_nodal_values(hat_tilt=gait.nodal_values["hat_tilt"] + np.radians(1.5))
+    for ends in ((0.0, 50.0), (50.0, 100.0)):
+        assert measures.angle_change(gait, moved, "hat_tilt", *ends) == pytest.approx(1.5)
+        assert measures.angle_change(gait, gait, "hat_tilt", *ends) == 0.0
+
+
 def test_heights_and_forces_are_those_of_a_walk(gait):
     assert 30.0 < measures.foot_lift(gait, "right") < 300.0  # [mm]
     assert 20.0 < measures.late_stance_force(gait, "right") < 130.0  # [% BW]
