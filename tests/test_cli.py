@@ -105,7 +105,6 @@ REFUSED = [
     (["--limit", "knee_flexion_r=:"], ["--limit", "LOW:HIGH"]),
     (["--set", "friction=0.4", "--set", "contact.friction=0.5"], ["contact.friction=0.5", "once"]),
     (["--strength", "SOL=0.5", "--strength", "SOL=0.9"], ["'SOL=0.9'", "stated once for SOL"]),
-    (["--strength", "SOL=0.5", "--strength", "soleus_l=0.9"], ["0.9 for soleus_l", "SOL states"]),
     (["--muscle", "SOL.l0=0.3", "--muscle", "SOL.l0=0.31"], ["'SOL.l0=0.31'", "once for SOL.l0"]),
     (["--muscle", "SOL.l_slack=240"], ["l_slack of SOL", "240.0", "0.0508 to 1.27"]),
     (["--muscle", "SOL.color=-1"], ["muscle entry", "'color'", "l_opt"]),

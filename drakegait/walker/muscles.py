@@ -98,7 +98,8 @@ class MuscleSet:
             planar_set: which table of planar groups: `"table3"` (the paper's) or `"gait2d"`
                 (Ackermann & van den Bogert 2010). No meaning for the spatial skeleton.
             strength: factor on the maximal force by muscle (`"soleus_r"`) or by group, both
-                sides (`"soleus"` or `"SOL"`); a muscle's mass follows its force.
+                sides (`"soleus"` or `"SOL"`); factors that name one muscle multiply. A muscle's
+                mass follows its force.
             changes: other values for table entries `f_max` [N], `l_opt`, `l_slack`, `l0` [m] or
                 `width` of a muscle or group, for 1.80 m and 75 kg (scaled like the table). For
                 example `{"SOL": {"l_slack": 0.245}}`, a likely misprint of the paper set right.
@@ -125,13 +126,8 @@ class MuscleSet:
                     usual = float(rows[i % len(rows)][column_name])
                     sided[i][column_name] = _entry(f"{entry} of {name}", value, usual)
         factor = np.ones(len(names))
-        stated: dict[int, str] = {}
         for name, value in (strength or {}).items():
-            for i in select(name, names, groups):
-                if i in stated:
-                    allowed = f"stated once for each muscle; {stated[i]} states {names[i]}, too"
-                    raise InvalidInput("strength", f"{value} for {name}", allowed)
-                stated[i], factor[i] = name, _strength(name, value)
+            factor[select(name, names, groups)] *= _strength(name, value)
 
         def column(header: str) -> np.ndarray:
             return np.array([float(row[header]) for row in sided])

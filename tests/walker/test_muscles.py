@@ -152,3 +152,13 @@ def test_arrays_are_frozen():
 def test_bad_input_is_named(arguments, error, words):
     with pytest.raises(error, match=words):
         MuscleSet.load(**arguments)
+
+
+def test_factors_of_a_group_and_of_its_muscle_multiply():
+    """What adds strength to a weak walker relies on it."""
+    usual, both = MuscleSet.load("planar"), MuscleSet.load(
+        "planar", strength={"SOL": 0.2, "soleus": 1.5, "soleus_l": 2.0}
+    )
+    ratio = dict(zip(usual.names, both.f_max / usual.f_max, strict=True))
+    assert (ratio["soleus_r"], ratio["soleus_l"]) == pytest.approx((0.3, 0.6))
+    assert ratio["vasti_l"] == 1.0
