@@ -151,6 +151,14 @@ def test_of_one_leg_only_that_leg_becomes_stronger():
     assert [names[i] for i in np.flatnonzero(ratio > 1.01)] == ["soleus_r"]
 
 
+def test_strength_stated_by_abbreviations_is_multiplied_too():
+    study = TINY.replace(strength=dict.fromkeys(TINY.walker.muscles.abbreviations, 0.4))
+    _, everyone, *_ = knobs(study, "muscles")
+    assert everyone.words(50) == "with 50 % more strength of all muscles"
+    stronger = changed_study(everyone, 50.0).walker.muscles.f_max
+    np.testing.assert_allclose(stronger / study.walker.muscles.f_max, 1.5)
+
+
 def test_what_is_lacking_says_where_strength_begins():
     tries = knobs(weak(TINY, 0.2), "muscles")[0].values
     assert tries[0] == 30.0  # 30 of 60 N m is 50 %; half of it may do
