@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from drakegait.report import style
 from drakegait.report.curves import SIDES, GaitCurves
+from drakegait.report.legend import legend
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,7 +46,7 @@ def excitations(all_curves: Sequence[GaitCurves]) -> Figure:
         style.subtitle_of(first) + "\nline: excitation, tint: activation, "
         "grey bar: when electromyography usually shows bursts", panel=(2.3, 1.15),
     )  # fmt: skip
-    style.legend(figure, all_curves, None)
+    legend(figure, all_curves, None)
     cells = list(grid.flat)
     for number, (axes, group) in enumerate(zip(cells, groups, strict=False)):
         last = number >= len(groups) - columns

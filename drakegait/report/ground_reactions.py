@@ -9,6 +9,7 @@ import numpy as np
 
 from drakegait.report import style
 from drakegait.report.curves import SIDES, GaitCurves
+from drakegait.report.legend import legend
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +40,7 @@ def ground_reactions(all_curves: Sequence[GaitCurves]) -> Figure:
         2, len(shown), "Ground reactions", style.subtitle_of(first), panel=_VECTOR_PANEL
     )
     has_reference = first.ground_reaction("right", "vertical", reference=True) is not None
-    style.legend(figure, all_curves, "reference" if has_reference else None)
+    legend(figure, all_curves, "reference" if has_reference else None)
     for axes, axis in zip(grid[0], shown, strict=True):
         style.cycle_axes(axes, first, numbers=True)
         _draw_force(axes, all_curves, axis)

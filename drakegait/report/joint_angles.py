@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from drakegait.report import style
 from drakegait.report.curves import SIDES, GaitCurves
+from drakegait.report.legend import legend
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,7 +57,7 @@ def joint_angles(all_curves: Sequence[GaitCurves]) -> Figure:
     columns = 3
     rows = -(-(len(panels) + 1) // columns)
     figure, grid = style.panel_figure(rows, columns, "Joint angles", style.subtitle_of(first))
-    style.legend(figure, all_curves, "reference", body=True)
+    legend(figure, all_curves, "reference", body=True)
     cells = list(grid.flat)
     for number, (axes, panel) in enumerate(zip(cells, panels, strict=False)):
         style.cycle_axes(axes, first, numbers=number < columns, label=number >= len(panels) - 2)

@@ -9,6 +9,7 @@ import numpy as np
 
 from drakegait.report import style
 from drakegait.report.curves import SIDES, GaitCurves
+from drakegait.report.legend import legend
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +41,7 @@ def joint_moments(all_curves: Sequence[GaitCurves]) -> Figure:
         3 if spatial else 2, 3, "Joint moments and powers",
         style.subtitle_of(first) + "; internal moments, thin: passive part",
     )  # fmt: skip
-    style.legend(figure, all_curves, None)
+    legend(figure, all_curves, None)
     cells = [*grid[0], *(grid[2, :2] if spatial else ())]
     for number, (axes, (name, title)) in enumerate(zip(cells, _MOMENTS.items(), strict=False)):
         style.cycle_axes(axes, first, numbers=number < 3, label=number > 2)

@@ -11,6 +11,7 @@ import numpy as np
 from drakegait.report import style
 from drakegait.report.curves import SIDES, GaitCurves
 from drakegait.report.footprints import draw_footprints
+from drakegait.report.legend import legend
 from drakegait.walker import feet
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def stick_figure(all_curves: Sequence[GaitCurves]) -> Figure:
     figure.text(
         left, 1 - 0.40 / height, style.subtitle_of(curves), fontsize=8, color="#555555", va="top"
     )
-    style.legend(figure, [curves], None, toe_off=False)
+    legend(figure, [curves], None, toe_off=False)
 
     def panel(x: float, y: float, wide: float, high: float) -> Axes:
         """Axes whose lower left corner and size are given in inches."""

@@ -7,7 +7,7 @@ program that draws figures of its own.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,7 +31,6 @@ PHASE_COLOURS = 2 * ("#dde4ec", "#e8edf2", "#f6f8fa", "#eff3f6")
 OTHER_STYLES = ("--", ":", "-.", (0, (1, 2)))
 FORMATS = ("svg", "png")
 _PNG_DPI = 130
-_NARROW = 8.0  # [inch] below which a figure has title, names and legend below each other
 _CHARACTERS = 16.0  # of a subtitle, per inch
 _LONGEST_SUBTITLE = 110  # characters of who walks
 _LOOK = {
@@ -69,9 +68,8 @@ def panel_figure(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    left, right, bottom, gap_x, gap_y = 0.5, 0.15, 0.42, 0.42, 0.42
+    left, right, top, bottom, gap_x, gap_y = 0.5, 0.15, 0.95, 0.42, 0.42, 0.42
     width = left + right + columns * panel[0] + (columns - 1) * gap_x
-    top = 1.2 if width < _NARROW else 0.95
     subtitle = textwrap.fill(subtitle, round(_CHARACTERS * width))
     height = top + bottom + rows * panel[1] + (rows - 1) * gap_y
     figure = Figure(figsize=(width, height), facecolor="white")
@@ -153,43 +151,6 @@ def draw_gait(
     else:
         style = OTHER_STYLES[(number - 1) % len(OTHER_STYLES)]
         axes.plot(percent, values, color=colour, lw=1.0, ls=style, alpha=0.85, zorder=3)
-
-
-def legend(
-    figure: Figure, all_curves: Sequence[GaitCurves], reference: str | None,
-    body: bool = False, toe_off: bool = True,
-) -> None:  # fmt: skip
-    """One legend for the whole figure: beside the title, in a narrow one below it."""
-    from matplotlib.lines import Line2D
-
-    handles = [
-        Line2D([], [], color=colour, lw=1.8, label=f"{side} leg")
-        for side, colour in SIDE_COLOURS.items()
-    ]
-    if body:
-        handles.append(Line2D([], [], color=BODY_COLOUR, lw=1.8, label="trunk"))
-    if reference:
-        handles.append(Line2D([], [], color=REFERENCE_COLOUR, lw=4.0, label=reference))
-    for number, curves in enumerate(all_curves):
-        if len(all_curves) > 1:
-            style = "-" if number == 0 else OTHER_STYLES[(number - 1) % len(OTHER_STYLES)]
-            handles.append(Line2D([], [], color=BODY_COLOUR, lw=1.2, ls=style, label=curves.label))
-    if toe_off:
-        handles.append(Line2D([], [], color="#777777", lw=0.7, ls=(0, (4, 2)), label="toe off"))
-    width, height = figure.get_size_inches()
-    narrow = width < _NARROW
-    place = (0.4 / width, 1 - 0.62 / height) if narrow else (1 - 0.1 / width, 1 - 0.08 / height)
-    figure.legend(
-        handles=handles, loc="upper left" if narrow else "upper right", bbox_to_anchor=place,
-        ncols=len(handles), fontsize=7.0 if narrow else 7.5, frameon=False, handlelength=1.8,
-        columnspacing=1.2,
-    )  # fmt: skip
-    if toe_off:
-        figure.text(
-            1 - 0.15 / width, 1 - (0.9 if narrow else 0.62) / height,
-            "shaded: contact phases 1 to 8 of the right leg; each leg from its own heel strike",
-            fontsize=7, color="#7a8796", ha="right", va="top",
-        )  # fmt: skip
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:

@@ -269,3 +269,22 @@ def test_reference_without_forces_leaves_no_band():
 
 def _environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+
+
+@pytest.mark.parametrize("draw", [joint_angles, ground_reactions], ids=["wide", "narrow"])
+def test_however_long_names_are_nothing_is_written_over_something_else(draw):
+    gait = reference_gait("planar")
+    names = ["a disorder that takes many words to be told from the others", "another one", "plain"]
+    alone, many = draw([GaitCurves(gait, "alone")]), draw([GaitCurves(gait, n) for n in names])
+    for figure in (alone, many):
+        figure.canvas.draw()
+        written = [item.get_window_extent() for item in (*figure.texts, *figure.legends)]
+        written += [axes.title.get_window_extent() for axes in figure.axes if axes.get_title()]
+        for k, box in enumerate(written):
+            assert box.x0 >= 0.0 and box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1
+            assert not any(box.overlaps(other) for other in written[:k])
+    shown = [text.get_text() for item in many.legends for text in item.get_texts()]
+    assert set(names) <= set(shown)
+    for one, other in zip(alone.axes, many.axes, strict=True):  # panels keep their size
+        sizes = [axes.get_window_extent().size for axes in (one, other)]
+        np.testing.assert_allclose(*sizes, rtol=1e-6)
