@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from drakegait.commands.gait_files import output_folder
 from drakegait.commands.screen import console
 from drakegait.commands.stages import run_in_stages
 from drakegait.commands.sweep import INTERRUPTED
@@ -17,7 +18,7 @@ from drakegait.fidelity.contents import SECTIONS
 from drakegait.fidelity.published import Place
 from drakegait.paper.document import update
 from drakegait.paper.results import Results
-from drakegait.whole_file import write_bytes
+from drakegait.whole_file import new_folder, write_bytes
 
 PAGE, NUMBERS = "fidelity.html", "fidelity_results.json"
 DOCUMENT, PICTURES = "fidelity.md", "pictures"
@@ -30,7 +31,7 @@ def fidelity(
     """Run the sections and write the page; returns the exit code."""
     if docs is not None and not (Path(docs) / DOCUMENT).is_file():
         raise BadFile(Path(docs) / DOCUMENT, "is not there; --docs is the folder that has it.")
-    folder, screen = Path(out).expanduser(), console()
+    folder, screen = new_folder(output_folder("--out", out)), console()
     results = run_in_stages(screen, SECTIONS, folder, workers, scheduler, retry_failed)
     if results is None:
         return INTERRUPTED
@@ -47,7 +48,7 @@ def fidelity(
 def _write_docs(folder: Path, results: Results) -> None:
     results.save(folder / NUMBERS, document.FORMAT)
     results = Results.load(folder / NUMBERS, document.FORMAT)  # rounded: text and numbers agree
-    document.save_pictures(SECTIONS, results, folder / PICTURES)
+    document.save_pictures(SECTIONS, results, new_folder(folder / PICTURES))
     text = document.text(SECTIONS, results, PICTURES)
     update(folder / DOCUMENT, text, document.BEGIN, document.END)
 

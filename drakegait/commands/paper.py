@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from drakegait.commands.gait_files import output_folder
 from drakegait.commands.screen import console
 from drakegait.commands.stages import run_in_stages
 from drakegait.commands.sweep import INTERRUPTED
@@ -19,7 +20,7 @@ from drakegait.paper.contents import CHAPTERS
 from drakegait.paper.results import Results
 from drakegait.paper.run import chapter_named
 from drakegait.paper.verdict import Verdict
-from drakegait.whole_file import write_bytes
+from drakegait.whole_file import new_folder, write_bytes
 
 PAGE, NUMBERS = "paper.html", "paper_results.json"
 _COLOURS = {Verdict.YES: "green", Verdict.NO: "red"}
@@ -37,7 +38,7 @@ def paper(
     chapters = [chapter_named(name, CHAPTERS) for name in only] or list(CHAPTERS)
     if docs is not None:
         _check_docs(Path(docs), only)
-    folder, screen = Path(out).expanduser(), console()
+    folder, screen = new_folder(output_folder("--out", out)), console()
     results = run_in_stages(screen, chapters, folder, workers, scheduler, retry_failed)
     if results is None:
         return INTERRUPTED
