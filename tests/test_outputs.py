@@ -11,6 +11,8 @@ from gait_cases import reference_gait
 
 from drakegait import cli
 
+ROOT = Path(__file__).resolve().parents[1]
+
 
 def run(capsys, *arguments) -> tuple[int, str]:
     """Exit code and standard error."""
@@ -62,11 +64,16 @@ def test_an_import_does_not_replace_a_gait(capsys, gait_file, tmp_path):
         ("export", "GAIT", "--opensim", " "),
         ("plot", "GAIT", "--out", ""),
         ("walk", "--out", ""),
+        ("sweep", "SWEEP", "--out", ""),
+        ("paper", "--out", ""),
+        ("fidelity", "--out", " "),
     ],
 )
 def test_a_folder_without_a_name_is_refused(capsys, gait_file, monkeypatch, command):
     monkeypatch.chdir(gait_file.parent)
-    code, error = run(capsys, *(gait_file if word == "GAIT" else word for word in command))
+    sweep = ROOT / "examples" / "sweep_foot_mass.py"
+    files = {"GAIT": gait_file, "SWEEP": sweep}
+    code, error = run(capsys, *(files.get(word, word) for word in command))
     assert code == 2 and "this one is called ." in error
     assert [path.name for path in gait_file.parent.iterdir()] == ["gait.nc"]
 

@@ -11,6 +11,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
+from drakegait.commands.gait_files import output_folder
 from drakegait.commands.screen import PLAIN_INTERVAL, clock, console
 from drakegait.sweep import sweep_file
 from drakegait.sweep.progress import SweepProgress
@@ -32,7 +33,7 @@ def sweep(
 ) -> int:
     """Run a sweep and show it; returns the exit code."""
     asked = sweep_file.read(file)
-    folder = Path("out") / Path(file).stem if out is None else Path(out).expanduser()
+    folder = Path("out") / Path(file).stem if out is None else output_folder("--out", out)
     screen = console()
     display = SweepDisplay(screen)
     try:
