@@ -30,7 +30,7 @@ REFERENCE_COLOUR = "#c3c3c3"
 PHASE_COLOURS = 2 * ("#dde4ec", "#e8edf2", "#f6f8fa", "#eff3f6")
 OTHER_STYLES = ("--", ":", "-.", (0, (1, 2)))
 FORMATS = ("svg", "png")
-_PNG_DPI = 130
+PNG_DPI = 130  # widths of texts change with it
 _CHARACTERS = 16.0  # of a subtitle, per inch
 _LONGEST_SUBTITLE = 110  # characters of who walks
 _LOOK = {
@@ -72,7 +72,7 @@ def panel_figure(
     width = left + right + columns * panel[0] + (columns - 1) * gap_x
     subtitle = textwrap.fill(subtitle, round(_CHARACTERS * width))
     height = top + bottom + rows * panel[1] + (rows - 1) * gap_y
-    figure = Figure(figsize=(width, height), facecolor="white")
+    figure = Figure(figsize=(width, height), dpi=PNG_DPI, facecolor="white")
     FigureCanvasAgg(figure)
     axes = figure.subplots(
         rows, columns, squeeze=False,
@@ -165,7 +165,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         with beside(path) as part:
             if kind == "png":
                 compressed = {"compress_level": 3}
-                figure.savefig(part, format=kind, dpi=_PNG_DPI, pil_kwargs=compressed)
+                figure.savefig(part, format=kind, dpi=PNG_DPI, pil_kwargs=compressed)
             else:
                 figure.savefig(part, format=kind, metadata={"Date": None})
         paths.append(path)

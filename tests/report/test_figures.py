@@ -274,7 +274,8 @@ def _environment() -> dict[str, str]:
 @pytest.mark.parametrize("draw", [joint_angles, ground_reactions], ids=["wide", "narrow"])
 def test_however_long_names_are_nothing_is_written_over_something_else(draw):
     gait = reference_gait("planar")
-    names = ["a disorder that takes many words to be told from the others", "another one", "plain"]
+    long = "soleus left with 20 % of its strength, gastrocnemius left with 20 % of its strength"
+    names = [long, "plain", f"{long}, orthosis"]
     alone, many = draw([GaitCurves(gait, "alone")]), draw([GaitCurves(gait, n) for n in names])
     for figure in (alone, many):
         figure.canvas.draw()
