@@ -70,7 +70,8 @@ def panel_figure(
 
     left, right, top, bottom, gap_x, gap_y = 0.5, 0.15, 0.95, 0.42, 0.42, 0.42
     width = left + right + columns * panel[0] + (columns - 1) * gap_x
-    subtitle = textwrap.fill(subtitle, round(_CHARACTERS * width))
+    longest = round(_CHARACTERS * width)
+    subtitle = "\n".join(textwrap.fill(line, longest) for line in subtitle.splitlines())
     height = top + bottom + rows * panel[1] + (rows - 1) * gap_y
     figure = Figure(figsize=(width, height), dpi=PNG_DPI, facecolor="white")
     FigureCanvasAgg(figure)

@@ -271,6 +271,11 @@ def _environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
 
 
+def test_lines_of_a_subtitle_stay_lines():
+    figure = excitations.excitations([GaitCurves(reference_gait("planar"), "alone")])
+    assert "\nline: excitation" in figure.texts[1].get_text()
+
+
 @pytest.mark.parametrize("draw", [joint_angles, ground_reactions], ids=["wide", "narrow"])
 def test_however_long_names_are_nothing_is_written_over_something_else(draw):
     gait = reference_gait("planar")
