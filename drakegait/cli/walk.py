@@ -71,7 +71,8 @@ def walk(
     muscle: Annotated[list[str] | None, option(
         "--muscle", panel=_PERSON, metavar="MUSCLE.ENTRY=VALUE",
         help="Another value in the muscle table, for 1.80 m and 75 kg: f_max in N, l_opt, l_slack "
-        "or l0 in m, width without unit. Example: SOL.l_slack=0.245. Repeatable.")] = None,
+        "or l0 in m, width without unit; a fifth to five times what is there. "
+        "Example: SOL.l_slack=0.245. Repeatable.")] = None,
     planar_muscles: Annotated[str, option(
         "--planar-muscles", panel=_PERSON, metavar="SET",
         help="Muscle set of the planar models: table3 or gait2d.")] = "table3",

@@ -9,7 +9,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -196,7 +195,7 @@ def default_labels(gaits: Sequence[Gait]) -> tuple[str, ...]:
     named = []
     for number, label in enumerate(found):
         # In a name the first words of a difference do.
-        short = re.sub(r" \([^()]*\)", "", label)
+        short = words.brief(label)
         if not 1 <= len(short) <= LONGEST_LABEL - 4:
             short = f"gait {number + 1}"
         named.append(short if short not in named else f"{short} ({number + 1})")

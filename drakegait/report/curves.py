@@ -7,7 +7,6 @@ counted from left heel strike.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -15,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drakegait.quantities import GRAVITY
-from drakegait.report.study_words import peculiar
+from drakegait.report.study_words import brief, peculiar
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -163,11 +162,6 @@ def curves_of(gait: Gait, others: tuple[Gait, ...]) -> list[GaitCurves]:
     ]  # fmt: skip
 
 
-def _short(text: str) -> str:
-    """Without what stands in brackets: a name has to fit into a legend."""
-    return re.sub(r" \([^()]*\)", "", text)
-
-
 def _statements(gait: Gait) -> dict[str, str]:
     """What a reader would call a study by, in words."""
     study = gait.study
@@ -177,7 +171,7 @@ def _statements(gait: Gait) -> dict[str, str]:
         "nodes": f"{study.nodes} nodes",
         "speed": f"{gait.speed:.2f} m/s",
         "subject": f"{subject.height:.2f} m, {subject.mass:g} kg",
-        "peculiar": _short(", ".join(peculiar(study))) or "unchanged walker",
+        "peculiar": brief(", ".join(peculiar(study))) or "unchanged walker",
         "reference": f'reference "{reference}"',
         "weights": f"weights {study.energy_weight:g}/{study.deviation_weight:g}",
     }

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections import Counter
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from drakegait.settings import Settings
 from drakegait.walker.coordinates import TRANSLATIONS
+from drakegait.walker.muscles import ENTRY_UNITS
 
 if TYPE_CHECKING:
     from drakegait.study import GaitStudy
@@ -28,6 +30,11 @@ def spoken(name: str) -> str:
     stem = (name[:-2] if side else name).replace("_", " ")
     stem = _SEGMENTS.get(stem, stem)
     return f"{side} {stem}" if side else stem
+
+
+def brief(phrase: str) -> str:
+    """Without what stands in brackets, for a name."""
+    return re.sub(r" \([^()]*\)", "", phrase)
 
 
 def worn(study: GaitStudy) -> list[str]:
@@ -55,9 +62,8 @@ def strengths(study: GaitStudy) -> list[str]:
 
 def entries(study: GaitStudy) -> list[str]:
     """Entries of the muscle table that are other ones."""
-    units = {"f_max": " N", "l_opt": " m", "l_slack": " m", "l0": " m"}
     return [
-        f"{entry} of {muscle} {value:g}{units.get(entry, '')}"
+        f"{entry} of {muscle} {value:g} {ENTRY_UNITS[entry]}".rstrip(" -")
         for muscle, changed in study.muscle_changes.items()
         for entry, value in changed.items()
     ]

@@ -34,6 +34,7 @@ STRENGTH_LIMITS = (0.01, 10.0)
 
 ENTRY_FACTOR = 5.0
 """An entry of the table may be changed to so many times its value, or to its inverse."""
+ENTRY_UNITS = {"f_max": "N", "l_opt": "m", "l_slack": "m", "l0": "m", "width": "-"}
 _CHANGEABLE = {
     "f_max": "f_max_N",
     "l_opt": "l_opt_m",
@@ -124,7 +125,8 @@ class MuscleSet:
                 for entry, value in entries.items():
                     column_name = _table_column(entry)
                     usual = float(rows[i % len(rows)][column_name])
-                    sided[i][column_name] = _entry(f"{entry} of {name}", value, usual)
+                    allowed = usual, ENTRY_UNITS[entry]
+                    sided[i][column_name] = _entry(f"{entry} of {name}", value, *allowed)
         factor = np.ones(len(names))
         for name, value in (strength or {}).items():
             factor[select(name, names, groups)] *= _strength(name, value)
@@ -247,11 +249,11 @@ def _table_column(entry: str) -> str:
     return _CHANGEABLE[entry]
 
 
-def _entry(name: str, value: float, usual: float) -> float:
+def _entry(name: str, value: float, usual: float, unit: str) -> float:
     """Refuse what is far from the table: most likely another unit."""
     low, high = usual / ENTRY_FACTOR, usual * ENTRY_FACTOR
     if not is_number(value) or not low <= value <= high:
-        allowed = f"a number from {low:.3g} to {high:.3g}, as the table has {usual:g}"
+        allowed = f"a number from {low:.3g} to {high:.3g} [{unit}]; the table has {usual:g}"
         raise InvalidInput(name, value, allowed)
     return value
 
