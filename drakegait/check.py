@@ -14,7 +14,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from drakegait.quantities import MOST_INSTANTS, check_count
+from drakegait.motion import MOST_INSTANTS
+from drakegait.quantities import check_count
 from drakegait.walker import feet
 
 if TYPE_CHECKING:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+MOST_INSTANTS = 100_001  # in one piece, so that arrays fit into memory
+
 
 @dataclass(frozen=True, eq=False)
 class Motion:

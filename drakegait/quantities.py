@@ -10,7 +10,6 @@ import numpy as np
 from drakegait.errors import InvalidInput
 
 GRAVITY = 9.81  # [m/s^2], docs/formulation.md 0.1
-MOST_INSTANTS = 100_001  # at which a gait is evaluated in one piece
 
 
 def is_number(value: Any) -> bool:

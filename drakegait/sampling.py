@@ -13,7 +13,8 @@ import numpy as np
 
 from drakegait.labelled_arrays import LabelledArrays
 from drakegait.loads import Loads, loads_along, muscle_inputs
-from drakegait.quantities import GRAVITY, MOST_INSTANTS, check_count
+from drakegait.motion import MOST_INSTANTS
+from drakegait.quantities import GRAVITY, check_count
 from drakegait.walker import coordinates, feet
 
 if TYPE_CHECKING:

@@ -13,6 +13,7 @@ SUMMARY_FILE = "summary.json"
 FIGURES_FOLDER = "figures"
 REPLAY_FILE = "replay.html"
 REPORT_FILE = "report.html"
+SENSITIVITIES_FILE = "sensitivities.csv"  # in the folder of figures
 
 
 def gait_path(name: str) -> Path:

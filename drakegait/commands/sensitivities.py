@@ -7,15 +7,19 @@ import math
 from rich.console import Console
 from rich.table import Table
 
-from drakegait.commands.gait_files import FIGURES_FOLDER, gait_path, load_gait, output_folder
+from drakegait.commands.gait_files import (
+    FIGURES_FOLDER,
+    SENSITIVITIES_FILE,
+    gait_path,
+    load_gait,
+    output_folder,
+)
 from drakegait.commands.screen import console
 from drakegait.errors import InvalidInput
 from drakegait.exact import solve_exactly
 from drakegait.gait import Gait
 from drakegait.sensitivities import Sensitivities
 from drakegait.whole_file import new_folder
-
-CSV_FILE = "sensitivities.csv"
 
 
 def print_sensitivities(name: str, folder: str | None, count: int, exact: bool = False) -> None:
@@ -38,11 +42,11 @@ def print_sensitivities(name: str, folder: str | None, count: int, exact: bool =
         markup=False, soft_wrap=True,
     )  # fmt: skip
     screen.print(_table(answers, count))
-    answers.save_csv(target / CSV_FILE)
+    answers.save_csv(target / SENSITIVITIES_FILE)
     answers.plot(target, count)
     screen.print(
-        f"Files in {target}: {CSV_FILE}, sensitivities.svg, sensitivities.png.", markup=False,
-        soft_wrap=True,
+        f"Files in {target}: {SENSITIVITIES_FILE}, sensitivities.svg, sensitivities.png.",
+        markup=False, soft_wrap=True,
     )  # fmt: skip
 
 

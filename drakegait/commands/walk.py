@@ -14,6 +14,7 @@ from drakegait.commands.gait_files import (
     GAIT_FILE,
     REPLAY_FILE,
     REPORT_FILE,
+    SENSITIVITIES_FILE,
     SUMMARY_FILE,
     writable_folder,
 )
@@ -25,7 +26,6 @@ from drakegait.commands.screen import (
     print_starts,
     quiet_drake,
 )
-from drakegait.commands.sensitivities import CSV_FILE
 from drakegait.commands.unchanged import LABEL, UNCHANGED_FOLDER, known_gait, unchanged
 from drakegait.errors import InvalidInput
 from drakegait.gait import Gait
@@ -105,7 +105,7 @@ def _walk(
             files += _pictures(screen, gait, folder)
         except KeyboardInterrupt:
             _say(screen, "Interrupted while drawing: pictures are missing or of an earlier gait.")
-        _warn_of_old(screen, folder, f"{FIGURES_FOLDER}/{CSV_FILE}")
+        _warn_of_old(screen, folder, f"{FIGURES_FOLDER}/{SENSITIVITIES_FILE}")
     _say(screen, f"Files in {folder}: {', '.join(files)}.")
     return gait
 

@@ -27,8 +27,8 @@ from drakegait.export.storage import shown, write_storage
 from drakegait.export.xml_text import add, document, written
 from drakegait.gait import Gait
 from drakegait.loads import Loads, loads_along, muscle_inputs
-from drakegait.motion import Motion
-from drakegait.quantities import GRAVITY, MOST_INSTANTS, check_count
+from drakegait.motion import MOST_INSTANTS, Motion
+from drakegait.quantities import GRAVITY, check_count
 from drakegait.sampling import LOADED, centre_of_pressure
 from drakegait.walker import coordinates
 from drakegait.walker.coordinates import TO_OPENSIM

@@ -73,7 +73,7 @@ def _table(
     suffix = Path(path).suffix.lower()
     if suffix in OPENSIM:
         useless = [f"columns.{name}" for name in columns.columns if wanted(name)]
-        if columns.degrees is not None and wanted is not is_force_column:
+        if columns.degrees is not None and any(map(wanted, NAMES)):  # a file of angles
             useless.append("angle_unit")
         if useless:
             allowed = f"left out for {path}: headings and units of an OpenSim file are its own"

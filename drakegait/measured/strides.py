@@ -50,15 +50,18 @@ class Stride:
         return self.start if self.lead == "r" else self.other_strike
 
     @property
+    def _other(self) -> str:
+        return "l" if self.lead == "r" else "r"
+
+    @property
     def stances(self) -> dict[str, tuple[float, ...]]:
         """Heel strikes of the stances of each foot that lie in the stride, wholly or in part [s].
 
         The other foot may stand when the stride begins: that stance and its next share the cycle.
         """
-        other = "l" if self.lead == "r" else "r"
         return {
             self.lead: (self.start,),
-            other: (self.other_strike, self.other_strike - self.duration),
+            self._other: (self.other_strike, self.other_strike - self.duration),
         }
 
     def share(self, time: float) -> float:
@@ -68,10 +71,9 @@ class Stride:
     @property
     def strikes_and_offs(self) -> dict[str, tuple[float, float]]:
         """Heel strike and toe off of each foot as fractions of the cycle; toe off may be > 1."""
-        other = "l" if self.lead == "r" else "r"
         times = {
             self.lead: (self.start, self.lead_off),
-            other: (self.other_strike, self.other_off),
+            self._other: (self.other_strike, self.other_off),
         }
         shares = {side: (self.share(a), self.share(b)) for side, (a, b) in times.items()}
         return {side: (a, b if b > a else b + 1.0) for side, (a, b) in shares.items()}

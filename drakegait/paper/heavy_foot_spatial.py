@@ -64,9 +64,7 @@ _FLEXIONS = ("left knee flexion in left stance", "left dorsiflexion in left stan
 
 
 def _rise(n: Numbers, name: str) -> float:
-    prefix, _, rest = name.rpartition(": ")
-    prefix += ": " if prefix else ""
-    return n[f"{prefix}{rest} heavy"] - n[f"{prefix}{rest} normal"]
+    return n[f"{name} heavy"] - n[f"{name} normal"]
 
 
 def _flexions(n: Numbers) -> str:
