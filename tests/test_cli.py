@@ -95,6 +95,7 @@ REFUSED = [
     (["--weights", "-1", "1"], ["energy weight", "-1.0", "0 to 1000"]),
     (["--weights", "1", "x"], ["--weights", "'1 x'", "two numbers"]),
     (["--weights", "1"], ["--weights", "2 arguments"]),
+    (["--weights", "1", "--nodes", "20"], ["--weights", "'1 --nodes'", "two numbers"]),
     (["--solver", "knitro"], ["solver", "'knitro'", "condensed, ipopt-mumps, ipopt, snopt"]),
     (["--multipliers", "penalty"], ["multipliers", "'penalty'", "lifted, projected"]),
     (["--time-limit", "-3"], ["time_limit", "-3.0", "[s]"]),

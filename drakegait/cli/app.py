@@ -45,6 +45,21 @@ def whole(option: str) -> Any:
     return read
 
 
+def two_numbers(option: str) -> Any:
+    """The same for two numbers: before the words that follow are judged, of which the second may be
+    another option."""
+
+    def read(texts: tuple[str, str]) -> tuple[str, str]:
+        for text in texts:
+            try:
+                float(text)
+            except ValueError:
+                raise InvalidInput(option, " ".join(texts), "two numbers") from None
+        return texts
+
+    return read
+
+
 def _show_version(wanted: bool) -> None:
     if wanted:
         import drakegait

@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperCommand
 
 from drakegait.cli import disorder_options as disorder
-from drakegait.cli.app import app, number, option, whole
+from drakegait.cli.app import app, number, option, two_numbers, whole
 
 
 class _WalkCommand(TyperCommand):
@@ -39,7 +39,7 @@ def walk(
         help="Average forward velocity in m/s, 0.3 to 2.5. Default: 1.2, or that of an imported "
         "reference.")] = None,
     weights: Annotated[tuple[str, str], option(
-        "--weights", panel=_QUESTION, metavar="ENERGY DEVIATION",
+        "--weights", panel=_QUESTION, metavar="ENERGY DEVIATION", callback=two_numbers("--weights"),
         help="Weights of metabolic energy and of deviation from the reference in the cost, "
         "no unit, 0 to 1000.")] = ("1", "1"),
     reference: Annotated[str | None, option(
