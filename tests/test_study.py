@@ -82,6 +82,26 @@ def test_unknown_muscles_are_refused_when_the_walker_is_built():
         GaitStudy.spatial(strength={"solus_r": 0.5}).formulation()
 
 
+@pytest.mark.parametrize(
+    ("what", "one", "other"),
+    [
+        ("added mass", {"added_masses": (AddedMass("foot_r", 2.0),)},
+         {"added_masses": (AddedMass("foot_r", 2.0), AddedMass("foot_l", 2.0))}),
+        ("strength", {"strength": {"soleus_r": 0.5}},
+         {"strength": {"soleus_r": 0.5, "soleus_l": 0.5}}),
+        ("muscle_changes", {"muscle_changes": {"soleus_l": {"l_slack": 0.24}}},
+         {"muscle_changes": {f"soleus_{side}": {"l_slack": 0.24} for side in "rl"}}),
+        ("limit", {"limits": (JointLimit("knee_flexion_r", 0.0, 0.7),)},
+         {"limits": tuple(JointLimit(f"knee_flexion_{side}", 0.0, 0.7) for side in "rl")}),
+    ],
+)  # fmt: skip
+def test_a_symmetric_walker_has_nothing_on_one_side_alone(what, one, other):
+    with pytest.raises(InvalidInput, match=f"{what}.*both sides"):
+        GaitStudy.planar_symmetric(19, **one).formulation()
+    GaitStudy.planar(18, **one).formulation()
+    GaitStudy.planar_symmetric(19, **other).formulation()
+
+
 # Constants ---------------------------------------------------------------------------------
 
 

@@ -161,6 +161,49 @@ def test_pictures_are_where_drake_has_them(tmp_path, ask_opensim):
         np.testing.assert_allclose(found, np.hstack([centre, up]), atol=1e-9)
 
 
+def half_extents(shape: ElementTree.Element) -> np.ndarray:
+    """Of an SDF or OpenSim shape along its own axes, SDF's y and z as z and y."""
+
+    def sizes(*names: str) -> np.ndarray:
+        return np.concatenate([np.array(shape.findtext(name).split(), float) for name in names])
+
+    match shape.tag:
+        case "box":
+            return 0.5 * sizes("size")[[0, 2, 1]]
+        case "ellipsoid":
+            return sizes("radii")[[0, 2, 1]]
+        case "capsule":  # its ends are round
+            radius, half = sizes("radius", "length") * (1.0, 0.5)
+            return np.array([radius, half + radius, radius])
+        case "cylinder":
+            return sizes("radius", "length", "radius") * (1.0, 0.5, 1.0)
+        case "sphere" | "Sphere":
+            return sizes("radius", "radius", "radius")
+        case "Brick":
+            return sizes("half_lengths")
+        case "Ellipsoid":
+            return sizes("radii")
+        case "Cylinder":
+            return sizes("radius", "half_height", "radius")
+    raise AssertionError(shape.tag)
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_every_picture_of_the_model_file_is_there_in_its_size(model):
+    walker = study(model).walker
+    found = {
+        (body.get("name"), shape[0].get("name")): shape[0]
+        for body in ElementTree.fromstring(osim_model(walker)).iter("Body")
+        for shape in body.iter("attached_geometry")
+    }
+    for link in ElementTree.fromstring(walker.skeleton.sdf).iter("link"):
+        for visual in link.iter("visual"):
+            shape = found.pop((link.get("name"), visual.get("name")))
+            wanted = half_extents(visual.find("geometry")[0])
+            np.testing.assert_allclose(half_extents(shape), wanted, rtol=1e-9)
+    assert not found
+
+
 @pytest.mark.parametrize("model", ["planar", "spatial"])
 def test_parts_are_a_tree_with_all_coordinates_and_the_whole_mass(model):
     walker = study(model).walker

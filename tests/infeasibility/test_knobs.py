@@ -163,6 +163,11 @@ def test_what_is_lacking_says_where_strength_begins():
     tries = knobs(weak(TINY, 0.2), "muscles")[0].values
     assert tries[0] == 30.0  # 30 of 60 N m is 50 %; half of it may do
     assert list(tries) == sorted(set(tries))
+    rest = AtRest.__new__(AtRest)
+    rest.study = TINY
+    relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
+    all_lacks = dataclasses.replace(PLACE, missing=100.0, moment=1.0)  # beyond what is tried
+    assert list(knobs_for(rest, {"muscles": relaxed}, all_lacks)[0].values) == [900.0]
 
 
 def test_a_larger_tolerance_is_only_offered_for_a_little():

@@ -11,11 +11,12 @@ from measured_cases import SUBJECT, Lab
 from drakegait.walker.skeleton import Skeleton
 
 
-def write_c3d(path: Path, lab: Lab, markers: dict | None = None) -> None:
+def write_c3d(path: Path, lab: Lab, markers: dict | None = None, unit: str = "mm") -> None:
     """Two plates of type 2 and markers of a laboratory that has x to the left, y backward, z up.
 
     Args:
         markers: (K, 3) by label, in our axes [m], at a fifth of the plates' rate.
+        unit: what the file calls the unit of its markers, millimetres in truth.
     """
     ezc3d = pytest.importorskip("ezc3d")
     file = ezc3d.c3d()
@@ -30,7 +31,7 @@ def write_c3d(path: Path, lab: Lab, markers: dict | None = None) -> None:
         points[:3, k] = 1000.0 * np.stack([place[:, 1], -place[:, 0], place[:, 2]])[:, :frames]
     file["data"]["points"] = points
     file["parameters"]["POINT"]["LABELS"]["value"] = list(markers)
-    file["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
+    file["parameters"]["POINT"]["UNITS"]["value"] = [unit]
     signals, corners = [], []
     for k, head in enumerate(lab.heads):
         forward, up, right = (columns[f"{head}v{axis}"] for axis in "xyz")

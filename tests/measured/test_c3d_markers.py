@@ -9,7 +9,10 @@ from measured_cases import SUBJECT, Lab
 
 from drakegait.errors import BadFile, InvalidInput, UnknownName
 from drakegait.measured import import_walk
+from drakegait.measured.c3d_markers import read_c3d_motion
+from drakegait.measured.column_map import ColumnMap
 from drakegait.measured.markers import MEDIAL, NEEDED, TRUNK, marker_angles
+from drakegait.measured.notes import Notes
 
 pytest.importorskip("ezc3d")
 LAB = Lab()
@@ -104,6 +107,19 @@ def test_markers_in_another_unit_than_the_file_says_are_refused(tmp_path, marker
     write_c3d(tmp_path / "walk.c3d", LAB, {name: place / 1000.0 for name, place in markers.items()})
     with pytest.raises(BadFile, match=r"0.000\d* m from the heel, in its unit 'mm'.*unit wrong"):
         import_walk(tmp_path / "walk.c3d", tmp_path / "walk.c3d", **SIZE)
+
+
+@pytest.mark.parametrize("unit", ["", "furlong"])
+def test_an_unknown_unit_is_told_from_the_leg(tmp_path, markers, unit):
+    for metre in (1000.0, 1.0):  # of the file's unit
+        places = {name: 0.001 * metre * place for name, place in markers.items()}
+        write_c3d(tmp_path / "walk.c3d", LAB, places, unit)
+        table = read_c3d_motion(
+            tmp_path / "walk.c3d", ColumnMap(), height=SUBJECT.height, notes=Notes()
+        )
+        half = 0.5 * (markers["RASI"] + markers["LASI"])
+        moved = np.ptp(table.columns["hat_x"])
+        assert moved == pytest.approx(np.ptp(half[:, 0]), rel=0.05)
 
 
 @pytest.mark.parametrize("name", [NEEDED[0], "LTOE", "LPSI"])

@@ -91,6 +91,16 @@ def test_fit_of_closed_data_is_least_squares_and_of_open_data_closes():
     assert np.abs(spline.evaluate(naive, np.linspace(0, 1, 2001), 3)).max() > 4e3
 
 
+def test_units_do_not_matter():
+    """Which curves are open is told from their own range: millimetres or radians."""
+    spline, tau = PeriodicQuintic(25), np.linspace(0.0, 1.0, 101)
+    closed = np.sin(2 * np.pi * tau)
+    curves = np.array([closed + 0.003 * tau, closed + 0.1 * tau])
+    size = np.array([[1000.0], [0.001]])
+    plain, other = (fit_periodic(spline, tau, x, ["a", "b"]) for x in (curves, size * curves))
+    np.testing.assert_allclose(other, size * plain, rtol=1e-9, atol=1e-9 * np.abs(other).max())
+
+
 def test_refusals():
     with pytest.raises(InvalidInput, match="number of values"):
         force_periodicity(np.ones(7))

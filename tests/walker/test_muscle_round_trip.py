@@ -5,6 +5,7 @@ import pytest
 from muscle_cases import VARIANTS, fibre_inputs, variant
 from scipy.integrate import solve_ivp
 
+from drakegait.walker.contraction import contract
 from drakegait.walker.muscle_dynamics import MuscleFunctions
 from drakegait.walker.muscle_settings import MuscleSettings
 from drakegait.walker.muscles import MuscleSet
@@ -45,6 +46,27 @@ def test_activation_rate_is_the_derivative_of_activation(name, length):
         rate = functions.states(motion.inputs(t))["activation_rate"]
         scale = np.abs(rate).max()
         assert np.abs((up - down) / (2 * h) - rate).max() < 1e-4 * scale
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+@pytest.mark.parametrize("projection", [0.02, 0.3, 1.3])
+def test_rates_of_rounded_corners_are_derivatives_too(name, projection):
+    """Of what the program sees; 0.02 is the floor on the fibres' projection, at 1.3 they are too
+    long to pull."""
+    functions = variant(name, SPATIAL)
+    motion = Motion(SPATIAL, np.hypot(projection, np.sin(SPATIAL.pennation)))
+
+    def fibres(t: float):
+        z = np.moveaxis(motion.inputs(t), -1, 0)
+        return contract(np, functions.constants, functions.settings, z, 1.0)
+
+    h = 1e-6
+    for t in np.linspace(0.0, 1.0, 40, endpoint=False):
+        up, down, here = fibres(t + h), fibres(t - h), fibres(t)
+        for value, rate in (("length", "velocity"), ("activation", "activation_rate")):
+            found = (getattr(up, value) - getattr(down, value)) / (2 * h)
+            wanted = getattr(here, rate)
+            assert np.abs(found - wanted).max() < 1e-4 * np.abs(wanted).max()
 
 
 def test_excitations_found_reproduce_activation_forward_in_time():

@@ -89,6 +89,24 @@ def test_double_exponential_of_the_knee_by_hand():
 
 
 @pytest.mark.parametrize("kind", coordinates.SKELETONS)
+@pytest.mark.parametrize("side", ["r", "l"])
+@pytest.mark.parametrize(
+    ("joint", "angle", "moment"),  # rad and N m, anatomical; the other term is below 1e-4 there
+    [
+        ("hip_flexion", 1.81, -2.44), ("hip_flexion", -0.6981, 1.51),
+        ("knee_flexion", -0.13, 6.09), ("knee_flexion", 2.4, -11.03),
+        ("ankle_dorsiflexion", 0.52, -2.03), ("ankle_dorsiflexion", -0.74, 0.18),
+    ],
+)  # fmt: skip
+def test_double_exponential_at_the_ends_of_the_range(kind, side, joint, angle, moment):
+    """There one term is its factor (Anderson 1999)."""
+    passive = PassiveJoints(kind, settings=PassiveSettings(model="double_exponential"))
+    q = posture(kind, side, **{joint: np.degrees(angle)})
+    forces = coordinates.anatomical_signs(kind) * passive.forces(q, 0 * q)
+    assert forces[coordinates.position(kind, f"{joint}_{side}")] == pytest.approx(moment, abs=1e-3)
+
+
+@pytest.mark.parametrize("kind", coordinates.SKELETONS)
 @pytest.mark.parametrize("model", ["riener_edrich", "double_exponential"])
 def test_derivatives_agree_with_differences(kind, model):
     settings = PassiveSettings(model=model, damping_ankle=0.3, scale=1.4)
