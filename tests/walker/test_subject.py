@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -159,6 +160,11 @@ def test_numbers_of_numpy_are_numbers():
         ('"heel_r" attached_to="foot_r"><pose>-0.06 0',
          '"heel_r" attached_to="foot_r"><pose>-0.06 0.02',
          "'heel_r' is 20 mm beside its foot's sagittal plane"),
+        ("</model>",
+         '<link name="toes"><inertial><mass>0.1</mass></inertial></link>'
+         '<joint name="toe_hinge" type="revolute"><parent>foot_r</parent><child>toes</child>'
+         "<axis><xyz>0 1 0</xyz></axis></joint></model>",
+         "17 degrees of freedom, not 16"),
     ],
 )  # fmt: skip
 def test_own_models_that_do_not_fit_are_refused_by_name(old, new, words):
@@ -179,6 +185,19 @@ def test_own_model_is_used_and_scaled():
         Skeleton.load("spatial", text=text)
     with pytest.raises(BadFile, match="not an SDF text"):
         model_sdf("planar", Subject(), text="<urdf/>")
+
+
+def test_a_taller_body_looks_taller_everywhere():
+    """What is drawn grows with the segments."""
+    small, tall = (
+        ElementTree.fromstring(model_sdf("spatial", Subject(height=x))) for x in (1.8, 1.98)
+    )
+    for tag in ("radius", "length", "size", "radii"):
+        one, other = (
+            [float(word) for item in root.iter(tag) for word in item.text.split()]
+            for root in (small, tall)
+        )
+        np.testing.assert_allclose(other, 1.1 * np.array(one), rtol=1e-9)
 
 
 def test_unknown_skeletons_and_coordinates_list_the_known_ones():
