@@ -159,8 +159,10 @@ def _at_point(
             return f"the {who} would need friction of {_two_digits(ratio)}"
     if kind == "clearance":
         return f"the {who} is {_two_digits(1e3 * size)} mm in the ground"
-    if kind == "foot contact" and unit == "m":
-        return f"the {who} is {_two_digits(1e3 * size)} mm too far off its print"
+    if kind == "foot contact":
+        if unit == "m":
+            return f"the {who} is {_two_digits(1e3 * size)} mm too far off its print"
+        return f"the {who} is turned {_two_digits(np.degrees(size))} degrees too far on its print"
     if kind == "joint limit" and unit == "rad":
         return f"{who} leaves its range by {_two_digits(np.degrees(size))} degrees"
     return f"{kind} of the {who} is off by {_two_digits(size)} {unit}"

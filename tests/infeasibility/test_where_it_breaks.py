@@ -9,7 +9,7 @@ import pytest
 from infeasibility_cases import relaxation_of
 
 from drakegait.infeasibility.conflict import Relaxed
-from drakegait.infeasibility.place import Place, _when, place_of, short_muscles
+from drakegait.infeasibility.place import Place, _at_point, _when, place_of, short_muscles
 
 # Unsolved: solves of other tests leave their walk in a shared one.
 unsolved = functools.cache(relaxation_of.__wrapped__)
@@ -103,6 +103,12 @@ def test_of_the_whole_stride_there_is_no_instant():
 )
 def test_other_laws_break_in_words(law, row, amount, clause):
     assert broken(law, row, amount).sentence.startswith(clause)
+
+
+def test_a_foot_that_turns_is_off_by_an_angle():
+    program = unsolved("weak").program
+    said = _at_point(program, np.zeros(0), 0, "foot contact", "foot_r yaw", 0.02, "rad")
+    assert said == "the right foot is turned 1.1 degrees too far on its print"
 
 
 def test_a_kept_law_has_no_place():

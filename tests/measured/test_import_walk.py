@@ -119,9 +119,24 @@ def test_treadmill_is_made_overground(tmp_path):
     lab = Lab(belt=Lab().reference.speed)
     files = lab.write(tmp_path)
     close(take(files, treadmill_speed=lab.belt), lab.reference)
+    assert not said(take(files, treadmill_speed=lab.belt), "slide backwards")
     found = take(files)
     assert found.reference.speed == pytest.approx(lab.belt, rel=0.03)
     assert said(found, "belt", "estimated")
+    faster = take(files, treadmill_speed=1.15 * lab.belt)
+    assert said(faster, "slide backwards", f"{1.15 * lab.belt:g} m/s that was given")
+
+
+def test_the_clock_may_start_anywhere(tmp_path):
+    lab = Lab(noise=0.002)  # filtered by a rate that is told from the clock
+    walks = []
+    for start in (0.0, 100.0):
+        files = tmp_path / "motion.mot", tmp_path / "forces.mot"
+        for file, columns in zip(files, (lab.motion(), lab.forces()), strict=True):
+            write_mot(file, {**columns, "time": columns["time"] + start})
+        walks.append(take(files))
+    one, other = (walk.reference.coordinate_values(np.arange(50) / 50) for walk in walks)
+    np.testing.assert_allclose(other, one, atol=1e-7)
 
 
 def test_swapped_feet_are_found_and_said(tmp_path, plain):
