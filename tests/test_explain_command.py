@@ -73,6 +73,14 @@ SENTENCES = (
 )
 
 
+def test_further_conflicts_are_mentioned_where_there_are_some():
+    one = conflict()
+    several = dataclasses.replace(one, unique=False)
+    further = "There are further conflicts beside this one."
+    assert further not in one.sentences and further in several.sentences
+    assert further not in dataclasses.replace(several, smallest=False).sentences
+
+
 def test_walks_that_explained_another_question_are_named_and_then_replaced(
     capsys, tmp_path, told, ended
 ):

@@ -155,6 +155,15 @@ def test_every_muscle_is_drawn_mirrored_and_unbroken(kind, planar_set):
         np.testing.assert_allclose(right.points * [1, -1, 1], left.points)
 
 
+def test_bellies_are_as_thick_as_muscles_are_strong():
+    """Areas go with f_max, at a size that fits a thigh: the vasti's radius is 1 to 4 cm."""
+    muscles = MuscleSet.load("spatial")
+    radius = {x.muscle: x.radius for x in muscle_pieces(muscles, Subject()) if x.belly}
+    area = np.array([radius[name] ** 2 for name in muscles.names])
+    np.testing.assert_allclose(area / area[0], muscles.f_max / muscles.f_max[0])
+    assert 0.01 < radius["vasti_r"] < 0.04
+
+
 def test_drawn_muscles_shorten_in_the_sense_of_their_moment_arms():
     muscles, skeleton = MuscleSet.load("spatial"), Skeleton.load("spatial")
     pieces = muscle_pieces(muscles, Subject())

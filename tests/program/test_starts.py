@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from program_cases import dense_jacobian
 
 from drakegait.errors import InvalidInput
 from drakegait.program.gait_program import GaitProgram
-from drakegait.program.guess import guess_from_reference
+from drakegait.program.guess import fit_forces, guess_from_reference, reference_values
 from drakegait.program.starts import (
     NOISE,
     NOISE_LEVELS,
@@ -65,6 +66,33 @@ def test_the_reference_is_the_usual_guess():
     assert Start().event_centres(study.reference_walk, False) is None
     program, x = point(study, Start())
     np.testing.assert_array_equal(x, guess_from_reference(program))
+
+
+@pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
+def test_fitted_forces_are_the_best_compromise(study):
+    """Equations of motion in tolerances, effort, distance from the reference's ground reactions: no
+    other forces within their bounds have a smaller sum of squares."""
+    program = GaitProgram(study.formulation())
+    design = program.design
+    start = np.clip(design.pack(reference_values(program)), design.lower, design.upper)
+    muscles = slice(design.offsets["forces"], design.offsets["timing"])
+    contacts = slice(design.offsets["multipliers"], design.offsets["residuals"])
+    num_rows = program.row_numbers[0].max() + 1
+
+    def slope(x: np.ndarray) -> np.ndarray:
+        """Of half the sum of squares, as far as bounds leave it open."""
+        x = x.copy()
+        x[design.offsets["residuals"] :] = 0.0
+        found = dense_jacobian(program, x)[:num_rows].T @ program.rows(x)[:num_rows]
+        found[muscles] += 0.03 * x[muscles]
+        found[contacts] += 0.3 * (x - start)[contacts]
+        shut = ((found > 0.0) & (x < design.lower + 1e-4)) | (
+            (found < 0.0) & (x > design.upper - 1e-4)
+        )
+        return np.concatenate([np.where(shut, 0.0, found)[part] for part in (muscles, contacts)])
+
+    found = fit_forces(program, start)
+    assert np.abs(slope(found)).max() < 1e-5 * np.abs(slope(start)).max()
 
 
 @pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)

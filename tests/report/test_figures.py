@@ -12,6 +12,7 @@ from gait_cases import reference_gait
 
 from drakegait.errors import BadFile
 from drakegait.report import excitations, footprints, joint_moments, style
+from drakegait.report.comparison_figures import trunk_figure
 from drakegait.report.curves import GaitCurves, curves_of
 from drakegait.report.figures import FIGURES, plot
 from drakegait.report.ground_reactions import ground_reactions, heel_of_print
@@ -294,3 +295,15 @@ def test_however_long_names_are_nothing_is_written_over_something_else(draw):
     for one, other in zip(alone.axes, many.axes, strict=True):  # panels keep their size
         sizes = [axes.get_window_extent().size for axes in (one, other)]
         np.testing.assert_allclose(*sizes, rtol=1e-6)
+
+
+def test_small_angles_of_the_trunk_are_not_magnified():
+    """A panel of a comparison covers 8 degrees at least, about its curves."""
+    figure = trunk_figure([GaitCurves(reference_gait("spatial"))])
+    panels = [axes for axes in figure.axes if axes.lines]
+    assert len(panels) == 3
+    for axes in panels:
+        low, high = axes.get_ylim()
+        assert high - low >= 8.0 - 1e-9
+        curves = np.concatenate([x.get_ydata() for x in axes.lines if len(x.get_ydata()) > 9])
+        assert low <= curves.min() and curves.max() <= high
