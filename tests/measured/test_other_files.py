@@ -79,6 +79,10 @@ def test_a_broken_c3d_file_is_refused(tmp_path, files):
 def test_state_files_name_coordinates_by_path(tmp_path, files, walk):
     columns = {"time" if n == "time" else f"/jointset/any/{n}/value": v
                for n, v in Lab(unit="rad").motion().items()}  # fmt: skip
+    columns |= {  # speeds, and what ends in "value" without being a coordinate's
+        name.replace("/value", "/speed"): np.ones_like(v)
+        for name, v in columns.items() if name != "time"
+    } | {"value": np.zeros_like(columns["time"])}  # fmt: skip
     write_mot(tmp_path / "states.sto", columns, unit="rad")
     ours = take((tmp_path / "states.sto", files[1]))
     difference = ours.reference.coordinate_values(TAU) - walk.reference.coordinate_values(TAU)

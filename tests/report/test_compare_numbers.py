@@ -164,6 +164,16 @@ def test_ground_carries_the_weight_and_the_residual():
     assert carried == pytest.approx(wanted, rel=1e-3)
 
 
+def test_peaks_of_the_vertical_force_are_those_of_the_halves_of_stance():
+    item = curves(limping())
+    impulses = ground_impulses(item)
+    for side in ("right", "left"):
+        up = item.ground_reaction(side, "vertical")[:-1]
+        share = (item.percent[:-1] - item.heel_strike(side)) % 100.0 / item.toe_off(side)
+        for name, half in (("first", share <= 0.5), ("second", (share >= 0.5) & (share <= 1.0))):
+            assert find(impulses, f"{name}_peak", side) == pytest.approx(up[half].max())
+
+
 # Symmetry --------------------------------------------------------------------------------------
 
 
