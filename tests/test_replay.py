@@ -195,8 +195,13 @@ def drawn_lengths(skeleton, pieces, names, q) -> np.ndarray:
 
 def test_rotation_takes_z_along_a_direction():
     for direction in np.random.default_rng(4).normal(size=(20, 3)) + [0.0, 0.0, 0.5]:
-        turned = scene.along_z(direction).matrix() @ [0.0, 0.0, 1.0]
-        np.testing.assert_allclose(turned, direction / np.linalg.norm(direction), atol=1e-12)
+        matrix = scene.along_z(direction).matrix()
+        unit = direction / np.linalg.norm(direction)
+        np.testing.assert_allclose(matrix @ [0.0, 0.0, 1.0], unit, atol=1e-12)
+        np.testing.assert_allclose(matrix @ matrix.T, np.eye(3), atol=1e-12)
+        assert np.linalg.det(matrix) > 0.0
+        axis = np.cross([0.0, 0.0, 1.0], unit)  # the smallest rotation leaves its axis alone
+        np.testing.assert_allclose(matrix @ axis, axis, atol=1e-12)
 
 
 def test_live_view_has_prints_and_worn_weights(gait):

@@ -19,6 +19,7 @@ from drakegait.program.starts import (
     starts,
 )
 from drakegait.study import GaitStudy
+from drakegait.walker import feet
 
 STUDIES = {
     "planar": GaitStudy.planar(14),
@@ -66,6 +67,25 @@ def test_the_reference_is_the_usual_guess():
     assert Start().event_centres(study.reference_walk, False) is None
     program, x = point(study, Start())
     np.testing.assert_array_equal(x, guess_from_reference(program))
+
+
+@pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
+def test_contact_forces_of_the_reference_add_up_to_its_ground_reactions(study):
+    program = GaitProgram(study.formulation())
+    values = reference_values(program)
+
+    def by_foot(rows: np.ndarray) -> np.ndarray:
+        """(num_points, foot, heel or toe, axis) without the yaw."""
+        rows = rows[:, : feet.NUM_ROWS].reshape(-1, 2, feet.ROWS_PER_FOOT)
+        return rows[..., :6].reshape(-1, 2, 2, 3)
+
+    forces = by_foot(values.multipliers).sum(axis=2)
+    schedule = program.formulation.schedule
+    centres = np.append(program.formulation.event_centres, 1.0)[: schedule.num_phases + 1]
+    wanted = study.reference_walk.ground_reactions(schedule.instants(centres))
+    loaded = by_foot(program.points.loaded).any(axis=2)
+    np.testing.assert_allclose(forces, np.where(loaded, wanted, 0.0), atol=1e-9)
+    assert np.abs(forces).max() > 500.0
 
 
 @pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)

@@ -208,6 +208,8 @@ def test_others_are_dashed_and_named_by_their_difference():
     heavy = dataclasses.replace(gait, study=gait.study.with_added_mass("foot_r", 2.0))
     both = curves_of(gait, (heavy,))
     assert [item.label for item in both] == ["unchanged walker", "2 kg on the right foot"]
+    labels = [item.label for item in curves_of(gait, (heavy, heavy))]
+    assert labels[1:] == ["2 kg on the right foot (2)", "2 kg on the right foot (3)"]
     assert len({item.label for item in curves_of(gait, (gait, gait))}) == 3
     figure = joint_angles(both)
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
@@ -295,6 +297,15 @@ def test_however_long_names_are_nothing_is_written_over_something_else(draw):
     for one, other in zip(alone.axes, many.axes, strict=True):  # panels keep their size
         sizes = [axes.get_window_extent().size for axes in (one, other)]
         np.testing.assert_allclose(*sizes, rtol=1e-6)
+
+
+def test_a_moment_that_turns_the_toes_inward_is_positive_for_both_feet():
+    """About the vertical, up: that of the right foot to the left, that of the left to the right."""
+    curves = GaitCurves(reference_gait("spatial"))
+    for side, inward in (("right", 1.0), ("left", -1.0)):
+        turning = 1.0 + np.arange(curves.samples)
+        curves.data.free_moment.loc[{"foot": side}] = turning
+        np.testing.assert_array_equal(curves.free_moment(side), inward * turning)
 
 
 def test_small_angles_of_the_trunk_are_not_magnified():
