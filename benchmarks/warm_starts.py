@@ -68,6 +68,11 @@ def run(study: GaitStudy, guess: Gait | None) -> dict[str, Any]:
     }
 
 
+def _means(pairs: list[tuple[dict[str, Any], dict[str, Any]]], key: str) -> np.ndarray:
+    """Geometric means (2,) of the cold and of the warm solves."""
+    return np.exp(np.mean(np.log([[one[key] for one in pair] for pair in pairs]), axis=0))
+
+
 def table(results: dict[str, dict[str, Any]]) -> str:
     """The results as Markdown: a line per walk; means are geometric."""
     lines = [
@@ -81,11 +86,8 @@ def table(results: dict[str, dict[str, Any]]) -> str:
         if not pairs:
             continue
 
-        def means(key: str, pairs: list[Any] = pairs) -> tuple[float, float]:
-            return tuple(np.exp(np.mean(np.log([[one[key] for one in p] for p in pairs]), axis=0)))
-
         ratios = [warm["wall_s"] / cold["wall_s"] for cold, warm in pairs]
-        iterations, times, costs = means("iterations"), means("wall_s"), means("cost")
+        iterations, times, costs = (_means(pairs, key) for key in ("iterations", "wall_s", "cost"))
         lines.append(
             f"| {name} | {len(pairs)} | {iterations[0]:.0f} | {iterations[1]:.0f} | "
             f"{times[0]:.1f} | {times[1]:.1f} | {times[1] / times[0]:.2f} | {min(ratios):.2f} | "

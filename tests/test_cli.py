@@ -284,7 +284,7 @@ def test_defaults_are_those_of_the_study(model):
 
 def test_options_reach_the_study():
     study, options, _ = request(
-        model="planar", nodes=20, speed=1.0, weights=("0.5", "2"), height=1.7, mass=60.0,
+        model="planar", nodes=20, speed=1.0, weights=(0.5, 2.0), height=1.7, mass=60.0,
         added_mass=["foot_r=2.0", "hat=5@0.1,0,0.3"], strength=["SOL=0.5", "vasti_l=2"],
         limit=["knee_flexion_r=:45", "hat_z=0.8:1.1", "hip_flexion_l=-10:"],
         set_=["friction=0.5", "energy.model=umberger2010", "basal=on", "anthropometry=deleva",

@@ -46,16 +46,16 @@ def whole(option: str) -> Any:
 
 
 def two_numbers(option: str) -> Any:
-    """The same for two numbers: before the words that follow are judged, of which the second may be
-    another option."""
+    """The same for two numbers, of which the second may be missing and another option stand for it.
 
-    def read(texts: tuple[str, str]) -> tuple[str, str]:
-        for text in texts:
-            try:
-                float(text)
-            except ValueError:
-                raise InvalidInput(option, " ".join(texts), "two numbers") from None
-        return texts
+    A callback: it is called before the words that are left are refused.
+    """
+
+    def read(texts: tuple[str, str]) -> tuple[float, float]:
+        try:
+            return float(texts[0]), float(texts[1])
+        except ValueError:
+            raise InvalidInput(option, " ".join(texts), "two numbers") from None
 
     return read
 

@@ -41,7 +41,7 @@ def walk(
     weights: Annotated[tuple[str, str], option(
         "--weights", panel=_QUESTION, metavar="ENERGY DEVIATION", callback=two_numbers("--weights"),
         help="Weights of metabolic energy and of deviation from the reference in the cost, "
-        "no unit, 0 to 1000.")] = ("1", "1"),
+        "no unit, 0 to 1000.")] = (1.0, 1.0),  # type: ignore[assignment]
     reference: Annotated[str | None, option(
         "--reference", panel=_QUESTION, metavar="FILE|NAME",
         help="Walk to stay close to: a person's from `drakegait import` (.nc), a CSV file "

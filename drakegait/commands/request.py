@@ -36,7 +36,7 @@ class WalkRequest:
     model: str
     nodes: int | None
     speed: float | None
-    weights: tuple[str, str]
+    weights: tuple[float, float]
     reference: str | None
     limit: Sequence[str] | None
     height: float | None
@@ -87,10 +87,7 @@ class WalkRequest:
             mass=person.mass if self.mass is None else self.mass,
             **constants.pop("subject", {}),
         )
-        energy_weight, deviation_weight = (
-            _number("--weights", " ".join(self.weights), text, "two numbers, ENERGY DEVIATION")
-            for text in self.weights
-        )
+        energy_weight, deviation_weight = self.weights
         study = GaitStudy(
             model=self.model,
             nodes=_default_nodes(self.model) if self.nodes is None else self.nodes,

@@ -56,6 +56,14 @@ def knobs(study: GaitStudy, law: str, speed: float = 1.2):
     return knobs_for(rest, {law: relaxed}, *((PLACE, SHORT) if law == "muscles" else (None,)))
 
 
+def muscle_knobs(study: GaitStudy, place: Place, short: tuple[str, ...] = ()):
+    """Those of muscles that are too weak at a place: they ask the study alone."""
+    rest = AtRest.__new__(AtRest)
+    rest.study = study
+    relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
+    return knobs_for(rest, {"muscles": relaxed}, place, short)
+
+
 @pytest.mark.parametrize(
     ("speed", "reached", "tries"),
     [
@@ -141,10 +149,7 @@ def test_of_one_leg_only_that_leg_becomes_stronger():
     study = GaitStudy.planar(11, interior_points=(2,) * 8).with_disorder(
         Weakness("soleus", "r", 0.5)
     )
-    rest = AtRest.__new__(AtRest)
-    rest.study = study
-    relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
-    first = knobs_for(rest, {"muscles": relaxed}, PLACE, SHORT)[0]
+    first = muscle_knobs(study, PLACE, SHORT)[0]
     ratio = first.study(20).walker.muscles.f_max / study.walker.muscles.f_max
     names = study.walker.muscles.names
     assert first.words(20) == "with 20 % more strength of SOL right"
@@ -163,21 +168,15 @@ def test_what_is_lacking_says_where_strength_begins():
     tries = knobs(weak(TINY, 0.2), "muscles")[0].values
     assert tries[0] == 30.0  # 30 of 60 N m is 50 %; half of it may do
     assert list(tries) == sorted(set(tries))
-    rest = AtRest.__new__(AtRest)
-    rest.study = TINY
-    relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
     all_lacks = dataclasses.replace(PLACE, missing=100.0, moment=1.0)  # beyond what is tried
-    assert list(knobs_for(rest, {"muscles": relaxed}, all_lacks)[0].values) == [900.0]
+    assert list(muscle_knobs(TINY, all_lacks)[0].values) == [900.0]
 
 
 def test_a_larger_tolerance_is_only_offered_for_a_little():
     words = [knob.words(5) for knob in knobs(TINY, "muscles")]
     assert not any("off by" in text for text in words)  # 30 N m are lacking
-    rest = AtRest.__new__(AtRest)
-    rest.study = TINY
-    relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
     little = dataclasses.replace(PLACE, missing=2.5)
-    last = knobs_for(rest, {"muscles": relaxed}, little)[-1]
+    last = muscle_knobs(TINY, little)[-1]
     assert last.values[0] == 5.0
     assert last.study(5.0).tolerances.moment_tolerance == 5.0
 
@@ -207,11 +206,8 @@ def test_a_value_out_of_range_is_left_out():
 
 def test_muscles_of_both_legs_are_named_by_side():
     study = GaitStudy.planar(11, interior_points=(2,) * 8)
-    rest = AtRest.__new__(AtRest)
-    rest.study = study
-    relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
     names = ("soleus_l", "vasti_r", "soleus_r")
-    first = knobs_for(rest, {"muscles": relaxed}, PLACE, names)[0]
+    first = muscle_knobs(study, PLACE, names)[0]
     assert first.words(20) == "with 20 % more strength of SOL and VAS right"
     ratio = first.study(20).walker.muscles.f_max / study.walker.muscles.f_max
     stronger = {study.walker.muscles.names[i] for i in np.flatnonzero(ratio > 1.01)}
@@ -220,10 +216,7 @@ def test_muscles_of_both_legs_are_named_by_side():
 
 def test_whoever_names_most_muscles_means_all():
     few, many = ("soleus_r", "vasti_r"), tuple(weak(TINY, 0.2).walker.muscles.names)
-    rest = AtRest.__new__(AtRest)
-    rest.study = weak(TINY, 0.2)
-    relaxed = Relaxed(frozenset(("muscles",)), np.zeros(1), np.zeros(1), (), True, {})
     for names, groups in ((few, ["VAS, SOL", "all muscles"]), (many, ["all muscles"])):
-        found = knobs_for(rest, {"muscles": relaxed}, PLACE, names)
+        found = muscle_knobs(weak(TINY, 0.2), PLACE, names)
         words = [knob.words(20) for knob in found if "strength" in knob.words(20)]
         assert words == [f"with 20 % more strength of {group}" for group in groups]

@@ -12,7 +12,6 @@ from gait_cases import reference_gait
 
 from drakegait.errors import BadFile
 from drakegait.report import excitations, footprints, joint_moments, style
-from drakegait.report.comparison_figures import trunk_figure
 from drakegait.report.curves import GaitCurves, curves_of
 from drakegait.report.figures import FIGURES, plot
 from drakegait.report.ground_reactions import ground_reactions, heel_of_print
@@ -297,24 +296,3 @@ def test_however_long_names_are_nothing_is_written_over_something_else(draw):
     for one, other in zip(alone.axes, many.axes, strict=True):  # panels keep their size
         sizes = [axes.get_window_extent().size for axes in (one, other)]
         np.testing.assert_allclose(*sizes, rtol=1e-6)
-
-
-def test_a_moment_that_turns_the_toes_inward_is_positive_for_both_feet():
-    """About the vertical, up: that of the right foot to the left, that of the left to the right."""
-    curves = GaitCurves(reference_gait("spatial"))
-    for side, inward in (("right", 1.0), ("left", -1.0)):
-        turning = 1.0 + np.arange(curves.samples)
-        curves.data.free_moment.loc[{"foot": side}] = turning
-        np.testing.assert_array_equal(curves.free_moment(side), inward * turning)
-
-
-def test_small_angles_of_the_trunk_are_not_magnified():
-    """A panel of a comparison covers 8 degrees at least, about its curves."""
-    figure = trunk_figure([GaitCurves(reference_gait("spatial"))])
-    panels = [axes for axes in figure.axes if axes.lines]
-    assert len(panels) == 3
-    for axes in panels:
-        low, high = axes.get_ylim()
-        assert high - low >= 8.0 - 1e-9
-        curves = np.concatenate([x.get_ydata() for x in axes.lines if len(x.get_ydata()) > 9])
-        assert low <= curves.min() and curves.max() <= high
